@@ -1,0 +1,79 @@
+#include "taut/surface/surface.hpp"
+
+#include <string>
+#include <utility>
+
+#include "taut/core/error.hpp"
+
+namespace taut {
+namespace {
+
+void require_dim(const char* what, Index found, Index expected) {
+  if (found == expected) return;
+  throw InvalidArgument(std::string(what) + " has dimension " + std::to_string(found) + ", the surface has " +
+                        std::to_string(expected));
+}
+
+}  // namespace
+
+Surface::Surface(std::shared_ptr<const ImplicitFunction> function, SurfaceExtras extras)
+    : function_(std::move(function)), extras_(std::move(extras)) {
+  if (!function_) throw InvalidArgument("a surface needs a function");
+  const Index d = dim();
+  const Index k = codim();
+  if (d < 2) throw InvalidArgument("a surface needs at least 2 dimensions, not " + std::to_string(d));
+  if (k < 1 || k >= d) {
+    throw InvalidArgument(std::to_string(k) + " equations in " + std::to_string(d) +
+                          " dimensions leave no curve to walk on: at most " + std::to_string(d - 1) + " are possible");
+  }
+  if (extras_.domain) require_dim("the domain", extras_.domain->dim(), d);
+  if (extras_.box) require_dim("the box", extras_.box->dim(), d);
+  if (extras_.samples) require_dim("the samples", extras_.samples->dim(), d);
+}
+
+Surface Surface::with_box(Box box) const {
+  SurfaceExtras extras = extras_;
+  extras.box = std::move(box);
+  return Surface(function_, std::move(extras));
+}
+
+Points Surface::value(const PointsIn& x) const {
+  require_dim("the point", x.rows(), dim());
+  Points result(codim(), x.cols());
+  make_evaluator()->evaluate({.n = x.cols(), .x = x.data(), .value = result.data()});
+  return result;
+}
+
+Points Surface::jacobian(const PointsIn& x) const {
+  require_dim("the point", x.rows(), dim());
+  Points result(dim() * codim(), x.cols());
+  make_evaluator()->evaluate({.n = x.cols(), .x = x.data(), .jacobian = result.data()});
+  return result;
+}
+
+Eigen::MatrixXd Surface::hessian(const VectorIn& x, const VectorIn& weight) const {
+  require_dim("the point", x.size(), dim());
+  require_dim("the weight", weight.size(), codim());
+  Eigen::MatrixXd result(dim(), dim());
+  make_evaluator()->evaluate({.n = 1, .x = x.data(), .weight = weight.data(), .hessian = result.data()});
+  return result;
+}
+
+Eigen::Array<bool, Eigen::Dynamic, 1> Surface::inside_domain(const PointsIn& x, double slack) const {
+  require_dim("the point", x.rows(), dim());
+  using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  if (domain() == nullptr) return Mask::Constant(x.cols(), true);
+  const Index m = domain()->codim();
+  Points value(m, x.cols());
+  Points jacobian(dim() * m, x.cols());
+  domain()->make_evaluator()->evaluate(
+      {.n = x.cols(), .x = x.data(), .value = value.data(), .jacobian = jacobian.data()});
+  Mask inside(x.cols());
+  for (Index j = 0; j < x.cols(); ++j) {
+    Eigen::Map<const Eigen::MatrixXd> gradients(jacobian.col(j).data(), dim(), m);
+    inside(j) = (value.col(j).transpose().array() >= -slack * gradients.colwise().norm().array()).all();
+  }
+  return inside;
+}
+
+}  // namespace taut
