@@ -16,9 +16,9 @@ struct Context {
   int threads = 0;
   /// Called now and then, from one thread at a time: a stage's name ("cells", "march", "fit") and how much of it is
   /// done, 0..1, or a negative number where the total is not known.
-  std::function<void(std::string_view stage, double done)> progress;
+  std::function<void(std::string_view stage, double done)> progress = nullptr;
   /// Something the user should know that is no error ("10,345 points: a well-spread subset of 1,500 is fitted").
-  std::function<void(std::string_view message)> note;
+  std::function<void(std::string_view message)> note = nullptr;
   /// Raise it from anywhere (a signal handler, another thread) to stop: the job throws `Cancelled` within milliseconds.
   const std::atomic<bool>* cancel = nullptr;
   /// Bytes a job may hold; a job that would need more throws `OutOfMemory`. 0 = half of the machine's memory.
