@@ -5,6 +5,7 @@
 
 #ifdef TAUT_THREADS
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #endif
@@ -26,7 +27,9 @@ void parallel_for(const Context& context, Index begin, Index end, Index grain,
     const auto run_blocks = [&](const tbb::blocked_range<Index>& range) {
       for (Index block = range.begin(); block != range.end(); ++block) run_block(block);
     };
-    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    // More than there are cores would make TBB print a warning.
+    const int num_cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(context.threads > 0 ? std::min(context.threads, num_cores) : num_cores);
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<Index>(0, num_blocks), run_blocks); });
     return;
   }
