@@ -4,31 +4,26 @@
 
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/context.hpp"
+#include "taut/march/distance_field.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut {
 
-enum class MarchMethod {
-  convergent,  ///< default
-  axis,        ///< the paper's: fast marching with axis neighbours on exactly the surface's cells; biased (docs/march.md)
-  dijkstra,
-};
-
 struct MarchOptions {
   MarchMethod method = MarchMethod::convergent;
-  /// Stop as soon as the distance at this point is final.
+  /// Stop as soon as the distance at this point (d, on the surface) is final.
   std::optional<Vector> target;
 };
 
-/// Distances from sources on the cells.
-struct DistanceField {
-  Vector distance;  ///< n, model units; infinity where not reached (or not needed for `target`)
-  // ... what descent needs
-};
-[[nodiscard]] DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources, const MarchOptions& options = {}, const Context& context = {});
-
-/// The polyline (d x m) from `target` down the field to the nearest source, returned from source to target, ends exact.
-/// Empty (d x 0) when the target was not reached.
-[[nodiscard]] Points descend(const SurfaceCells& cells, const DistanceField& field, const VectorIn& target);
+/// Marches distances from `sources` (d x m surface points, anywhere in the cells) over the cells; lazy cells are grown
+/// only where the front passes. Cells that cannot be reached without stepping from one sheet of the surface to another
+/// keep the distance infinity: refine the cells then.
+///
+/// Properties: 0 at a source; distance >= |p - q|; with several sources the minimum of the single fields; the same
+/// bits for the same input. Accuracy: docs/march.md. Cost: O(N 3^d + N log N); (d + 3) doubles a cell.
+/// Throws InvalidArgument when a source or target has the wrong dimension, is not finite, or no cell lies around a
+/// source; SingularPoint when the surface is singular there; OutOfMemory, Cancelled.
+[[nodiscard]] DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources,
+                                  const MarchOptions& options = {}, const Context& context = {});
 
 }  // namespace taut
