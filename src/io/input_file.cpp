@@ -143,9 +143,10 @@ std::string quote(std::string_view text) {
 
 std::string counted(std::size_t n, std::string_view noun) {
   std::string out = std::to_string(n) + " ";
-  out += noun;
-  if (n != 1) out += "s";
-  return out;
+  if (n == 1) return out.append(noun);
+  if (noun == "vertex") return out + "vertices";
+  if (noun.ends_with("y")) return out.append(noun.substr(0, noun.size() - 1)) + "ies";
+  return out.append(noun) + "s";
 }
 
 std::string lower(std::string_view text) {

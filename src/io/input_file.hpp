@@ -39,7 +39,7 @@ void normalise_text(InputFile& file);
 /// `text` in quotes for a message: cut to some 40 characters, unprintable bytes escaped.
 [[nodiscard]] std::string quote(std::string_view text);
 
-/// "1 point", "2 points"
+/// "1 point", "2 points", "3 vertices", "4 entries"
 [[nodiscard]] std::string counted(std::size_t n, std::string_view noun);
 
 /// The extension in lower case with its dot: ".ply".

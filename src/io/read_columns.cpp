@@ -176,7 +176,7 @@ PointCloud read_named(const InputFile& file, TextReader& reader, RowParser& pars
 PointCloud read_csv(const InputFile& file, TextReader& reader) {
   RowParser parser;
   parser.choose_separator(reader.rest());
-  if (!all_numbers(parser.split(reader.rest()))) return read_named(file, reader, parser);
+  if (is_header(parser.split(reader.rest()))) return read_named(file, reader, parser);
   Table table;
   read_rows(file, reader, parser, 0, table);
   if (table.width < 2) {
@@ -189,7 +189,7 @@ PointCloud read_csv(const InputFile& file, TextReader& reader) {
 bool has_header(TextReader& reader, RowParser& parser) {
   parser.choose_separator(reader.rest());
   const std::vector<std::string_view> names = parser.split(reader.rest());
-  return !all_numbers(names) && roles_from_header(names).named;
+  return is_header(names) && roles_from_header(names).named;
 }
 
 }  // namespace

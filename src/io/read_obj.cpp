@@ -35,6 +35,7 @@ class ObjReader {
 
   PointCloud read() {
     while (reader_.next_line()) read_statement(reader_.word());
+    if (num_vertices() == 0 && unknown_ > 0) refuse_unknown();
     check_largest(largest_vertex_, num_vertices(), "vertex");
     check_largest(largest_normal_, num_normals(), "normal");
     PointCloud cloud;
@@ -77,10 +78,17 @@ class ObjReader {
     const bool is_word = std::all_of(keyword.begin(), keyword.end(), [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
     });
-    if (!is_word || (num_vertices() == 0 && ++unknown_before_vertices_ > 3)) {
-      reader_.fail(quote(keyword) + " is no OBJ statement; check that the extension fits the format");
+    if (unknown_ == 0) {
+      first_unknown_line_ = reader_.line_number();
+      first_unknown_ = keyword;
     }
     ++unknown_;
+    if (!is_word) refuse_unknown();
+  }
+
+  [[noreturn]] void refuse_unknown() const {
+    file_.fail_at_line(first_unknown_line_,
+                       quote(first_unknown_) + " is no OBJ statement; check that the extension fits the format");
   }
 
   void skip_continuation() {
@@ -200,7 +208,8 @@ class ObjReader {
   LargestIndex largest_vertex_;
   LargestIndex largest_normal_;
   std::size_t unknown_ = 0;
-  std::size_t unknown_before_vertices_ = 0;
+  std::size_t first_unknown_line_ = 0;
+  std::string_view first_unknown_;
 };
 
 }  // namespace

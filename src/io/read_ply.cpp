@@ -181,6 +181,8 @@ class AsciiRows {
   /// The least a row of this element takes: a digit and a separator for each number.
   [[nodiscard]] static std::uint64_t least_size(const Element& element) { return 2 * element.properties.size(); }
   [[nodiscard]] std::size_t remaining() const { return reader_.remaining() + 1; }  // the last line end may be missing
+  /// Bytes from where we are within the row, or more.
+  [[nodiscard]] std::size_t remaining_here() { return reader_.rest().size() + remaining(); }
 
   void begin_row(const Element& element, std::uint64_t row) {
     if (reader_.next_line()) return;
@@ -220,6 +222,7 @@ class BinaryRows {
     return size;
   }
   [[nodiscard]] std::size_t remaining() const { return static_cast<std::size_t>(end_ - p_); }
+  [[nodiscard]] std::size_t remaining_here() const { return remaining(); }
 
   void begin_row(const Element& element, std::uint64_t row) {
     element_ = &element;
@@ -311,16 +314,27 @@ std::vector<int> vertex_slots(const InputFile& file, const Element& vertex, bool
 }
 
 template <class Rows>
-void read_list(Rows& rows, const Property& property, std::vector<std::int64_t>& out) {
-  out.clear();
+std::uint64_t read_length(Rows& rows, const Property& property) {
   const double length = rows.value(property, property.count_type);
-  constexpr double kLongest = 1e9;
-  if (!(length >= 0 && length <= kLongest) || length != std::floor(length)) {
+  if (!(length >= 0) || length != std::floor(length)) {
     rows.fail("list " + quote(property.name) + " has an impossible length; the file is damaged");
   }
-  const auto n = static_cast<std::uint64_t>(length);
-  if (n > rows.remaining() && n > 1000)
+  if (length > static_cast<double>(rows.remaining_here())) {
     rows.fail("list " + quote(property.name) + " is longer than the file; the file is damaged");
+  }
+  return static_cast<std::uint64_t>(length);
+}
+
+template <class Rows>
+void skip_property(Rows& rows, const Property& property) {
+  const std::uint64_t n = property.is_list ? read_length(rows, property) : 1;
+  for (std::uint64_t i = 0; i < n; ++i) rows.value(property, property.type);
+}
+
+template <class Rows>
+void read_indices(Rows& rows, const Property& property, std::vector<std::int64_t>& out) {
+  out.clear();
+  const std::uint64_t n = read_length(rows, property);
   for (std::uint64_t i = 0; i < n; ++i) {
     const double index = rows.value(property, property.type);
     if (!(std::abs(index) <= static_cast<double>(kMostPoints)) || index != std::floor(index)) {
@@ -338,18 +352,17 @@ void read_vertices(const InputFile& file, Rows& rows, const Element& vertex, Poi
   cloud.points.resize(3, n);
   if (has_normals) cloud.normals.resize(3, n);
   std::array<double, 6> row = {};
-  std::vector<std::int64_t> ignored;
   for (Index j = 0; j < n; ++j) {
     rows.begin_row(vertex, static_cast<std::uint64_t>(j));
     for (std::size_t i = 0; i < slots.size(); ++i) {
       const Property& property = vertex.properties[i];
-      if (property.is_list) {
-        read_list(rows, property, ignored);
+      if (slots[i] < 0) {
+        skip_property(rows, property);
         continue;
       }
       const double value = rows.value(property, property.type);
-      if (slots[i] >= 0) row[static_cast<std::size_t>(slots[i])] = value;
-      if (slots[i] >= 0 && slots[i] < 3 && !std::isfinite(value)) {
+      row[static_cast<std::size_t>(slots[i])] = value;
+      if (slots[i] < 3 && !std::isfinite(value)) {
         rows.fail(coordinate_name(slots[i]) + " is " + (std::isnan(value) ? "nan" : "infinite") +
                   "; remove the point or give it a finite value");
       }
@@ -390,12 +403,11 @@ void read_faces(Rows& rows, const Element& face, std::uint64_t num_vertices, std
       continue;
     }
     for (const Property& property : face.properties) {
-      if (!property.is_list) {
-        rows.value(property, property.type);
+      if (&property != &*indices) {
+        skip_property(rows, property);
         continue;
       }
-      read_list(rows, property, list);
-      if (&property != &*indices) continue;
+      read_indices(rows, property, list);
       polygon.clear();
       for (const std::int64_t index : list) {
         const bool restarts = strips && index == -1;

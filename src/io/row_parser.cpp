@@ -140,11 +140,17 @@ std::string RowParser::explain(std::string_view line, std::size_t column) const 
   return where + " is not a number; correct the line";
 }
 
-bool all_numbers(const std::vector<std::string_view>& fields) {
-  return std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
+bool is_header(const std::vector<std::string_view>& fields) {
+  const auto begins_like_a_number = [](std::string_view field) {
+    const auto first = field.find_first_not_of("+-.");
+    return first != std::string_view::npos && field[first] >= '0' && field[first] <= '9';
+  };
+  const auto is_number = [](std::string_view field) {
     double value = 0;
     return read_field(field, value) != NumberProblem::not_a_number;
-  });
+  };
+  return !std::all_of(fields.begin(), fields.end(), is_number) &&
+         std::none_of(fields.begin(), fields.end(), begins_like_a_number);
 }
 
 ColumnRoles roles_from_header(const std::vector<std::string_view>& names) {

@@ -28,8 +28,9 @@ class RowParser {
   std::vector<std::size_t> columns_;
 };
 
-/// Are all of these fields numbers (nan and inf included)? If not, the line is a header.
-[[nodiscard]] bool all_numbers(const std::vector<std::string_view>& fields);
+/// Does this look like a line of column names? It does when not every field is a number (nan and inf included) and none
+/// begins like one.
+[[nodiscard]] bool is_header(const std::vector<std::string_view>& fields);
 
 /// Which columns of a table are coordinates and which are normals.
 struct ColumnRoles {
