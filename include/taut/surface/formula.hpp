@@ -13,12 +13,12 @@ namespace taut {
 
 struct FormulaOptions {
   /// Ambient dimension; unset = the largest variable used (x y z w, or x1 x2 ...), at least 2.
-  std::optional<Index> dim;
+  std::optional<Index> dim = {};
   /// Parameters: names usable in the formula besides the variables, pi and e.
-  std::map<std::string, double> parameters;
+  std::map<std::string, double> parameters = {};
   /// Inequalities "lhs >= rhs" or "lhs <= rhs" that cut the surface.
-  std::vector<std::string> domain;
-  std::optional<Box> box;
+  std::vector<std::string> domain = {};
+  std::optional<Box> box = {};
 };
 
 /// Reads `lhs = rhs` or an expression meaning `= 0`, several equations separated by `;`, and compiles it.

@@ -1,0 +1,204 @@
+#include "surface/formula/formula_function.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "hwy/aligned_allocator.h"
+#include "surface/formula/kernels.hpp"
+
+namespace taut::detail {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Bytes of slots a block may fill: most of a first-level cache of 32 KiB.
+constexpr std::size_t kBlockBytes = 24 * 1024;
+/// Beyond this many points in a block decoding costs nothing any more.
+constexpr std::size_t kMaxBlock = 128;
+
+class FormulaEvaluator : public Evaluator {
+ public:
+  explicit FormulaEvaluator(std::shared_ptr<const FormulaProgram> program)
+      : Evaluator(program->dim(), program->codim()), program_(std::move(program)), step_(num_lanes()) {}
+
+  void evaluate(const PointBatch& batch) override;
+  void hessian_times(const PointBatch& batch, const double* v, double* out) override;
+  bool bounds(const BoxBatch& batch) override;
+
+ private:
+  void run(const Tape& tape, const PointArrays& arrays, std::size_t n);
+  /// Points of a block: a multiple of the vector length, whose slots fit the cache where possible; no more than needed.
+  [[nodiscard]] std::size_t block_size(std::size_t slots, std::size_t n) const;
+  double* slots(std::size_t count);
+  void hessian_by_columns(const PointBatch& batch);
+  /// Where x is NaN everything is, and where F_i is NaN so are its derivatives (else the branch of a min that was
+  /// taken could hide it).
+  void spread_nan(const PointBatch& batch, const double* value, double* product) const;
+  [[nodiscard]] PointArrays arrays(const PointBatch& batch) const;
+
+  std::shared_ptr<const FormulaProgram> program_;
+  std::size_t step_;
+  const Tape* value_tape_ = nullptr;  // found once: asking the program takes a lock
+  const Tape* jacobian_tape_ = nullptr;
+  const Tape* hessian_tape_ = nullptr;
+  const Tape* hessian_times_tape_ = nullptr;
+  bool hessian_too_large_ = false;
+  hwy::AlignedFreeUniquePtr<double[]> slots_;
+  std::size_t num_slots_ = 0;
+  std::vector<double> value_;  // when F is needed to see its NaNs but was not asked for
+};
+
+double* FormulaEvaluator::slots(std::size_t count) {
+  if (count > num_slots_) {
+    slots_ = hwy::AllocateAligned<double>(count);
+    if (!slots_) throw std::bad_alloc();
+    num_slots_ = count;
+  }
+  return slots_.get();
+}
+
+std::size_t FormulaEvaluator::block_size(std::size_t slots, std::size_t n) const {
+  const std::size_t fitting = kBlockBytes / sizeof(double) / std::max<std::size_t>(slots, 1);
+  const std::size_t wanted = std::min({fitting, kMaxBlock, (n + step_ - 1) / step_ * step_});
+  return std::max(step_, wanted / step_ * step_);
+}
+
+void FormulaEvaluator::run(const Tape& tape, const PointArrays& arrays, std::size_t n) {
+  const std::size_t block = block_size(tape.num_slots, n);
+  run_points(tape, arrays, n, block, slots(tape.num_slots * block));
+}
+
+PointArrays FormulaEvaluator::arrays(const PointBatch& batch) const {
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  return {.input = {batch.x, batch.weight, nullptr},
+          .input_stride = {d, k, d},
+          .output = {batch.value, batch.jacobian, batch.hessian},
+          .output_stride = {k, k * d, d * d}};
+}
+
+void FormulaEvaluator::evaluate(const PointBatch& batch) {
+  if (batch.n <= 0) return;
+  const auto n = static_cast<std::size_t>(batch.n);
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  PointArrays where = arrays(batch);
+  const bool derivatives = batch.jacobian != nullptr || batch.hessian != nullptr;
+  if (derivatives && batch.value == nullptr) {
+    value_.resize(std::max(value_.size(), n * k));
+    where.output[0] = value_.data();
+  }
+
+  if (batch.hessian != nullptr && hessian_tape_ == nullptr && !hessian_too_large_) {
+    hessian_tape_ = program_->hessian();
+    hessian_too_large_ = hessian_tape_ == nullptr;
+  }
+  if (batch.hessian != nullptr) std::fill_n(batch.hessian, n * d * d, 0.0);
+  if (derivatives && jacobian_tape_ == nullptr) jacobian_tape_ = &program_->jacobian();
+  if (batch.jacobian != nullptr && program_->sparse_jacobian()) std::fill_n(batch.jacobian, n * d * k, 0.0);
+
+  if (batch.hessian != nullptr && !hessian_too_large_) {
+    run(*hessian_tape_, where, n);
+  } else if (derivatives) {
+    where.output[2] = nullptr;
+    run(*jacobian_tape_, where, n);
+  } else {
+    if (value_tape_ == nullptr) value_tape_ = &program_->value();
+    run(*value_tape_, where, n);
+  }
+  if (batch.hessian != nullptr && hessian_too_large_) hessian_by_columns(batch);
+  spread_nan(batch, where.output[0], nullptr);
+}
+
+/// The Hessian of one point from its products with the unit vectors, which share the lanes.
+void FormulaEvaluator::hessian_by_columns(const PointBatch& batch) {
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  if (hessian_times_tape_ == nullptr) hessian_times_tape_ = &program_->hessian_times();
+  const std::size_t group = std::max<std::size_t>(step_, 64);
+  std::vector<double> unit(group * d, 0.0);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(batch.n); ++j) {
+    for (std::size_t first = 0; first < d; first += group) {
+      const std::size_t count = std::min(group, d - first);
+      for (std::size_t i = 0; i < count; ++i) unit[i * d + first + i] = 1;
+      run(*hessian_times_tape_,
+          {.input = {batch.x + j * d, batch.weight + j * k, unit.data()},
+           .input_stride = {0, 0, d},
+           .output = {nullptr, nullptr, batch.hessian + (j * d + first) * d},
+           .output_stride = {0, 0, d}},
+          count);
+      for (std::size_t i = 0; i < count; ++i) unit[i * d + first + i] = 0;
+    }
+    // Exactly symmetric, as the entries of a compiled Hessian are.
+    double* h = batch.hessian + j * d * d;
+    for (std::size_t column = 0; column < d; ++column) {
+      for (std::size_t row = 0; row < column; ++row) h[column * d + row] = h[row * d + column];
+    }
+  }
+}
+
+void FormulaEvaluator::hessian_times(const PointBatch& batch, const double* v, double* out) {
+  if (batch.n <= 0) return;
+  const auto n = static_cast<std::size_t>(batch.n);
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  if (hessian_times_tape_ == nullptr) hessian_times_tape_ = &program_->hessian_times();
+  PointArrays where = arrays(batch);
+  where.input[2] = v;
+  where.output[1] = nullptr;
+  where.output[2] = out;
+  where.output_stride[2] = d;
+  value_.resize(std::max(value_.size(), n * k));
+  where.output[0] = value_.data();
+  std::fill_n(out, n * d, 0.0);
+  run(*hessian_times_tape_, where, n);
+  spread_nan({.n = batch.n, .x = batch.x}, where.output[0], out);
+}
+
+void FormulaEvaluator::spread_nan(const PointBatch& batch, const double* value, double* product) const {
+  const auto n = static_cast<std::size_t>(batch.n);
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  const bool in_x = any_nan(batch.x, n * d);
+  const bool in_value = any_nan(value, n * k);
+  if (!in_x && !in_value) return;
+  for (std::size_t j = 0; j < n; ++j) {
+    const bool lost = in_x && any_nan(batch.x + j * d, d);
+    if (lost && batch.value != nullptr) std::fill_n(batch.value + j * k, k, kNaN);
+    bool any = lost;
+    for (std::size_t i = 0; i < k; ++i) {
+      const bool undefined = lost || (in_value && std::isnan(value[j * k + i]));
+      if (undefined && batch.jacobian != nullptr) std::fill_n(batch.jacobian + (j * k + i) * d, d, kNaN);
+      any = any || undefined;
+    }
+    if (any && batch.hessian != nullptr) std::fill_n(batch.hessian + j * d * d, d * d, kNaN);
+    if (any && product != nullptr) std::fill_n(product + j * d, d, kNaN);
+  }
+}
+
+bool FormulaEvaluator::bounds(const BoxBatch& batch) {
+  if (batch.n <= 0) return true;
+  if (value_tape_ == nullptr) value_tape_ = &program_->value();
+  const auto n = static_cast<std::size_t>(batch.n);
+  const std::size_t slots_per_box = 3 * std::size_t{value_tape_->num_slots};
+  const std::size_t block = block_size(slots_per_box, n);
+  run_boxes(*value_tape_,
+            {.lower = batch.lower,
+             .upper = batch.upper,
+             .dim = static_cast<std::size_t>(dim_),
+             .value_lower = batch.value_lower,
+             .value_upper = batch.value_upper,
+             .codim = static_cast<std::size_t>(codim_)},
+            n, block, slots(slots_per_box * block));
+  return true;
+}
+
+}  // namespace
+
+std::unique_ptr<Evaluator> FormulaFunction::make_evaluator() const {
+  return std::make_unique<FormulaEvaluator>(program_);
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,350 @@
+#include "surface/formula/parser.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "surface/formula/diagnostic.hpp"
+#include "surface/formula/lexer.hpp"
+#include "surface/formula/limits.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// How tightly an operator binds. Sums are collected apart, see Parser::end_term.
+enum Precedence : int { kProduct = 1, kSign = 2, kPower = 3 };
+
+struct Operator {
+  Op op;
+  int precedence;
+  std::size_t column;
+};
+
+/// An open parenthesis or function call, or the whole expression: where its parts begin on the shared stacks.
+struct Frame {
+  const Function* function = nullptr;
+  std::size_t column = 0;
+  std::size_t operators = 0;
+  std::size_t terms = 0;
+  std::size_t arguments = 0;
+  bool minus = false;  // the sign before the term being read
+  std::size_t sign_column = 0;
+};
+
+class Parser {
+ public:
+  Parser(std::string_view text, Names& names, Graph& graph) : lexer_(text), names_(names), graph_(graph) { advance(); }
+
+  std::vector<NodeId> statements(Statements allowed);
+
+ private:
+  void statement(Statements allowed);
+  void inequality(NodeId lhs);
+  void require_variables() const;
+  NodeId expression();
+
+  bool operand();        // reads one operand, or an opening (then false: another operand must follow)
+  bool after_operand();  // reads what follows an operand; false at the end of the expression
+  void name();
+  void close();
+  void implicit_product();
+
+  void push_frame(const Function* function, std::size_t column);
+  void reduce(int precedence);
+  void end_term(bool minus, std::size_t column);
+  NodeId end_sum();
+  NodeId call(const Function& function, std::size_t column, std::size_t first_argument);
+  NodeId checked(NodeId result, std::size_t column) const;
+
+  void advance() {
+    previous_ = token_;
+    token_ = lexer_.next();
+  }
+  [[noreturn]] void fail(std::size_t column, const std::string& reason) const {
+    throw parse_error(lexer_.text(), column, reason);
+  }
+  [[nodiscard]] std::string shown() const { return token_.kind == TokenKind::end ? "the end" : quoted(token_.text); }
+
+  Lexer lexer_;
+  Names& names_;
+  Graph& graph_;
+  Token token_;
+  Token previous_;
+  std::vector<NodeId> components_;
+  std::vector<std::size_t> columns_;  // where each component's statement begins
+  std::vector<NodeId> values_;
+  std::vector<NodeId> terms_;
+  std::vector<Operator> operators_;
+  std::vector<Frame> frames_;
+};
+
+std::vector<NodeId> Parser::statements(Statements allowed) {
+  if (token_.kind == TokenKind::end) fail(0, "the formula is empty");
+  while (token_.kind != TokenKind::end) {
+    const std::size_t column = token_.column;
+    statement(allowed);
+    columns_.resize(components_.size(), column);
+    if (token_.kind == TokenKind::semicolon) advance();
+  }
+  require_variables();
+  return std::move(components_);
+}
+
+void Parser::require_variables() const {
+  std::vector<bool> varies(graph_.size());
+  for (NodeId id = 0; id < graph_.size(); ++id) {
+    const Node& node = graph_[id];
+    const int operands = operand_count(node.op);
+    varies[id] = node.op == Op::variable || (operands > 0 && varies[node.a]) || (operands > 1 && varies[node.b]) ||
+                 (operands > 2 && varies[node.c]);
+  }
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    if (!varies[components_[i]]) fail(columns_[i], "there is no variable in this: it is the same everywhere");
+  }
+}
+
+void Parser::statement(Statements allowed) {
+  if (token_.kind == TokenKind::semicolon) fail(token_.column, "there is nothing before this ';'");
+  const NodeId lhs = expression();
+  const std::size_t column = token_.column;
+  const bool compares = token_.kind == TokenKind::at_least || token_.kind == TokenKind::at_most;
+  if (compares && allowed == Statements::equations) {
+    fail(column, "an inequality cuts a surface and belongs to its domain; the formula takes = only");
+  }
+  if (!compares && allowed == Statements::inequalities) {
+    fail(column, "a domain is an inequality such as 'z >= 0', and here is none");
+  }
+  if (compares) {
+    inequality(lhs);
+  } else if (token_.kind == TokenKind::equal) {
+    advance();
+    components_.push_back(checked(graph_.subtract(lhs, expression()), column));
+  } else {
+    components_.push_back(lhs);
+  }
+  if (token_.kind == TokenKind::equal) fail(token_.column, "a second '=': write several equations as a = b; b = c");
+  if (token_.kind != TokenKind::semicolon && token_.kind != TokenKind::end) {
+    fail(token_.column, "an equation and an inequality do not mix");
+  }
+}
+
+void Parser::inequality(NodeId lhs) {
+  const TokenKind direction = token_.kind;
+  while (token_.kind == TokenKind::at_least || token_.kind == TokenKind::at_most) {
+    const Token comparison = token_;
+    if (comparison.kind != direction) fail(comparison.column, "the inequalities of a chain must point the same way");
+    advance();
+    const NodeId rhs = expression();
+    const bool at_least = comparison.kind == TokenKind::at_least;
+    components_.push_back(checked(at_least ? graph_.subtract(lhs, rhs) : graph_.subtract(rhs, lhs), comparison.column));
+    lhs = rhs;
+  }
+}
+
+NodeId Parser::expression() {
+  push_frame(nullptr, token_.column);
+  do {
+    while (!operand()) {
+    }
+  } while (after_operand());
+  if (frames_.size() > 1) {
+    const Frame& open = frames_.back();
+    fail(open.column, open.function ? "the '(' of this " + std::string(open.function->name) + " is never closed"
+                                    : "this '(' is never closed");
+  }
+  const NodeId result = end_sum();
+  frames_.pop_back();
+  return result;
+}
+
+void Parser::push_frame(const Function* function, std::size_t column) {
+  frames_.push_back({function, column, operators_.size(), terms_.size(), values_.size(), false, column});
+}
+
+bool Parser::operand() {
+  const std::size_t column = token_.column;
+  switch (token_.kind) {
+    case TokenKind::number:
+      values_.push_back(graph_.constant(token_.number));
+      advance();
+      return true;
+    case TokenKind::name: {
+      const Function* function = find_function(token_.text);
+      if (function == nullptr) {
+        name();
+        return true;
+      }
+      advance();
+      if (token_.kind != TokenKind::open) {
+        fail(column, std::string(function->name) +
+                         " is a function and needs parentheses: " + std::string(function->name) + "(...)");
+      }
+      push_frame(function, column);
+      advance();
+      return false;
+    }
+    case TokenKind::open:
+      push_frame(nullptr, column);
+      advance();
+      return false;
+    case TokenKind::minus: operators_.push_back({Op::negate, kSign, column}); [[fallthrough]];
+    case TokenKind::plus: advance(); return false;
+    case TokenKind::close:
+      if (frames_.size() > 1 && previous_.kind == TokenKind::open) fail(column, "there is nothing between '(' and ')'");
+      [[fallthrough]];
+    default: fail(column, "a number, a variable or '(' is missing before " + shown());
+  }
+}
+
+void Parser::name() {
+  const Token token = token_;
+  NodeId node = kNoNode;
+  if (const auto index = names_.variable(lexer_.text(), token)) {
+    node = graph_.variable(*index);
+  } else if (const auto value = names_.value(token.text)) {
+    node = graph_.constant(*value);
+  } else {
+    throw names_.unknown(lexer_.text(), token);
+  }
+  values_.push_back(node);
+  advance();
+}
+
+bool Parser::after_operand() {
+  while (true) {
+    const Token token = token_;
+    switch (token.kind) {
+      case TokenKind::close: close(); continue;
+      case TokenKind::comma: {
+        Frame& frame = frames_.back();
+        if (frame.function == nullptr) {
+          fail(token.column, "a ',' outside of a function's arguments (decimals are written with a point)");
+        }
+        values_.push_back(end_sum());
+        frame.minus = false;
+        frame.sign_column = token.column;
+        advance();
+        return true;
+      }
+      case TokenKind::plus:
+      case TokenKind::minus:
+        end_term(token.kind == TokenKind::minus, token.column);
+        advance();
+        return true;
+      case TokenKind::times:
+      case TokenKind::divide:
+        reduce(kProduct);
+        operators_.push_back({token.kind == TokenKind::times ? Op::multiply : Op::divide, kProduct, token.column});
+        advance();
+        return true;
+      case TokenKind::power:
+        operators_.push_back({Op::power, kPower, token.column});
+        advance();
+        return true;
+      case TokenKind::number:
+      case TokenKind::name:
+      case TokenKind::open: implicit_product(); return true;
+      default: return false;
+    }
+  }
+}
+
+void Parser::implicit_product() {
+  const std::size_t column = token_.column;
+  const bool left = previous_.kind == TokenKind::number || previous_.kind == TokenKind::close;
+  if (!left && token_.kind == TokenKind::open) {
+    fail(previous_.column, quoted(previous_.text) + " is not a function: for a product put a * before the '('");
+  }
+  if (!left || token_.kind == TokenKind::number) fail(column, "an operator is missing before " + shown());
+  reduce(kSign);
+  if (operators_.size() > frames_.back().operators && operators_.back().op == Op::divide) {
+    fail(column, "a/b c can be read two ways: write a/(b*c) or (a/b)*c");
+  }
+  reduce(kProduct);
+  operators_.push_back({Op::multiply, kProduct, column});
+}
+
+void Parser::close() {
+  if (frames_.size() == 1) fail(token_.column, "this ')' closes nothing");
+  const NodeId inner = end_sum();
+  const Frame frame = frames_.back();
+  frames_.pop_back();
+  if (frame.function == nullptr) {
+    values_.push_back(inner);
+  } else {
+    values_.push_back(inner);
+    const NodeId result = call(*frame.function, frame.column, frame.arguments);
+    values_.resize(frame.arguments);
+    values_.push_back(result);
+  }
+  advance();
+}
+
+NodeId Parser::call(const Function& function, std::size_t column, std::size_t first_argument) {
+  const std::size_t count = values_.size() - first_argument;
+  if (count < static_cast<std::size_t>(function.min_arguments) ||
+      count > static_cast<std::size_t>(function.max_arguments)) {
+    const bool open_ended = function.max_arguments > 2;
+    fail(column, std::string(function.name) + " takes " + (open_ended ? "at least " : "") +
+                     std::to_string(function.min_arguments) +
+                     (function.min_arguments == 1 ? " argument" : " arguments") + ", here it has " +
+                     std::to_string(count));
+  }
+  const NodeId* arguments = values_.data() + first_argument;
+  if (function.max_arguments == 1) return checked(graph_.unary(function.op, arguments[0]), column);
+  NodeId result = graph_.binary(function.op, arguments[0], arguments[1]);
+  for (std::size_t i = 2; i < count; ++i) result = graph_.binary(function.op, result, arguments[i]);
+  return checked(result, column);
+}
+
+/// Applies the operators of this frame that bind at least as tightly as `precedence`.
+void Parser::reduce(int precedence) {
+  while (operators_.size() > frames_.back().operators && operators_.back().precedence >= precedence) {
+    const Operator top = operators_.back();
+    operators_.pop_back();
+    const NodeId right = values_.back();
+    if (top.op == Op::negate) {
+      values_.back() = graph_.negate(right);
+      continue;
+    }
+    values_.pop_back();
+    values_.back() = checked(graph_.binary(top.op, values_.back(), right), top.column);
+  }
+}
+
+void Parser::end_term(bool minus, std::size_t column) {
+  reduce(kProduct);
+  Frame& frame = frames_.back();
+  const NodeId value = values_.back();
+  values_.pop_back();
+  terms_.push_back(frame.minus ? graph_.negate(value) : value);
+  frame.minus = minus;
+  frame.sign_column = column;
+}
+
+NodeId Parser::end_sum() {
+  end_term(false, frames_.back().sign_column);
+  return checked(graph_.sum(terms_, frames_.back().terms), frames_.back().sign_column);
+}
+
+NodeId Parser::checked(NodeId result, std::size_t column) const {
+  if (graph_.size() > kMaxNodes) {
+    fail(column, "the formula is too large: more than " + std::to_string(kMaxNodes) + " operations");
+  }
+  if (graph_.is_constant(result) && !std::isfinite(graph_[result].value)) {
+    fail(column, std::isnan(graph_[result].value) ? "this is not a number for any x"
+                                                  : "this is infinite, or too large for a double");
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<NodeId> parse_statements(std::string_view text, Statements allowed, Names& names, Graph& graph) {
+  if (text.size() > kMaxFormulaBytes) {
+    throw parse_error(text, kMaxFormulaBytes,
+                      "the formula is longer than the " + std::to_string(kMaxFormulaBytes) + " bytes that are read");
+  }
+  return Parser(text, names, graph).statements(allowed);
+}
+
+}  // namespace taut::detail

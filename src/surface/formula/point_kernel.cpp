@@ -1,0 +1,175 @@
+#include "surface/formula/kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "surface/formula/point_kernel.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target first
+#include "surface/formula/lane_math-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace taut::detail::HWY_NAMESPACE {
+namespace {
+
+/// The slots of one block.
+struct Block {
+  double* slots;
+  std::size_t size;  // lanes, a multiple of the vector length
+
+  [[nodiscard]] double* operator[](std::uint32_t slot) const { return slots + slot * size; }
+};
+
+template <class F>
+HWY_INLINE void map1(const Instruction& ins, const Block& block, const F& f) {
+  const D d;
+  const double* a = block[ins.a];
+  double* result = block[ins.dst];
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(f(hn::Load(d, a + i)), d, result + i);
+}
+
+template <class F>
+HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
+  const D d;
+  const double* a = block[ins.a];
+  const double* b = block[ins.b];
+  double* result = block[ins.dst];
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
+    hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i);
+  }
+}
+
+template <class F>
+HWY_INLINE void map3(const Instruction& ins, const Block& block, const F& f) {
+  const D d;
+  const double* a = block[ins.a];
+  const double* b = block[ins.b];
+  const double* c = block[ins.c];
+  double* result = block[ins.dst];
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
+    hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i), hn::Load(d, c + i)), d, result + i);
+  }
+}
+
+/// Points [first, first + count) of an input array into a slot; the lanes left over repeat the last point.
+HWY_INLINE void read_input(const double* entry, std::size_t stride, std::size_t count, double* slot, std::size_t size) {
+  for (std::size_t j = 0; j < count; ++j) slot[j] = entry[j * stride];
+  for (std::size_t j = count; j < size; ++j) slot[j] = slot[count - 1];
+}
+
+HWY_INLINE M as_mask(V v) { return hn::MaskFromVec(v); }
+
+void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, std::size_t count, const Block& block) {
+  const D d;
+  for (const Instruction& ins : tape.instructions) {
+    switch (ins.code) {
+      case Code::input: {
+        const std::size_t stride = arrays.input_stride[ins.a];
+        read_input(arrays.input[ins.a] + first * stride + ins.b, stride, count, block[ins.dst], block.size);
+        break;
+      }
+      case Code::output: {
+        if (arrays.output[ins.c] == nullptr) break;
+        const std::size_t stride = arrays.output_stride[ins.c];
+        double* out = arrays.output[ins.c] + first * stride + ins.b;
+        const double* slot = block[ins.a];
+        for (std::size_t j = 0; j < count; ++j) out[j * stride] = slot[j];
+        break;
+      }
+      case Code::output_constant: {
+        if (arrays.output[ins.c] == nullptr) break;
+        const std::size_t stride = arrays.output_stride[ins.c];
+        double* out = arrays.output[ins.c] + first * stride + ins.b;
+        for (std::size_t j = 0; j < count; ++j) out[j * stride] = ins.value;
+        break;
+      }
+      case Code::constant: {
+        double* result = block[ins.dst];
+        const V value = lanes(ins.value);
+        for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(value, d, result + i);
+        break;
+      }
+      case Code::negate: map1(ins, block, [](V a) { return hn::Neg(a); }); break;
+      case Code::absolute: map1(ins, block, [](V a) { return hn::Abs(a); }); break;
+      case Code::sign: map1(ins, block, [](V a) { return sign_lanes(a); }); break;
+      case Code::square: map1(ins, block, [](V a) { return hn::Mul(a, a); }); break;
+      case Code::odd_power: {
+        const std::uint32_t n = ins.b;
+        map1(ins, block, [n](V a) { return odd_power_lanes(a, n); });
+        break;
+      }
+      case Code::sqrt: map1(ins, block, [](V a) { return hn::Sqrt(a); }); break;
+      case Code::cbrt: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::cbrt(x); }); }); break;
+      case Code::exp: map1(ins, block, [](V a) { return exp_lanes(a); }); break;
+      case Code::log: map1(ins, block, [](V a) { return log_lanes(a); }); break;
+      case Code::sin: map1(ins, block, [](V a) { return sin_lanes(a); }); break;
+      case Code::cos: map1(ins, block, [](V a) { return cos_lanes(a); }); break;
+      case Code::tan: map1(ins, block, [](V a) { return tan_lanes(a); }); break;
+      case Code::asin: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::asin(x); }); }); break;
+      case Code::acos: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::acos(x); }); }); break;
+      case Code::atan: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::atan(x); }); }); break;
+      case Code::sinh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::sinh(x); }); }); break;
+      case Code::cosh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::cosh(x); }); }); break;
+      case Code::tanh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::tanh(x); }); }); break;
+      case Code::add: map2(ins, block, [](V a, V b) { return hn::Add(a, b); }); break;
+      case Code::subtract: map2(ins, block, [](V a, V b) { return hn::Sub(a, b); }); break;
+      case Code::multiply: map2(ins, block, [](V a, V b) { return hn::Mul(a, b); }); break;
+      case Code::divide: map2(ins, block, [](V a, V b) { return hn::Div(a, b); }); break;
+      case Code::add_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Add(a, c); }); break;
+      case Code::c_subtract: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Sub(c, a); }); break;
+      case Code::multiply_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Mul(a, c); }); break;
+      case Code::divide_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Div(a, c); }); break;
+      case Code::c_divide: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Div(c, a); }); break;
+      case Code::minimum: map2(ins, block, [](V a, V b) { return minimum_lanes(a, b); }); break;
+      case Code::maximum: map2(ins, block, [](V a, V b) { return maximum_lanes(a, b); }); break;
+      case Code::power: map2(ins, block, [](V a, V b) { return power_lanes(a, b); }); break;
+      case Code::atan2: map2(ins, block, [](V a, V b) { return atan2_lanes(a, b); }); break;
+      case Code::less_equal: map2(ins, block, [](V a, V b) { return hn::VecFromMask(D(), hn::Le(a, b)); }); break;
+      case Code::choose: map3(ins, block, [](V m, V a, V b) { return hn::IfThenElse(as_mask(m), a, b); }); break;
+      case Code::keep: map2(ins, block, [](V m, V a) { return hn::IfThenElseZero(as_mask(m), a); }); break;
+      case Code::drop: map2(ins, block, [](V m, V a) { return hn::IfThenZeroElse(as_mask(m), a); }); break;
+    }
+  }
+}
+
+std::size_t lanes_of_target() { return hn::Lanes(D()); }
+
+bool any_nan_of_target(const double* x, std::size_t n) {
+  const D d;
+  const std::size_t step = hn::Lanes(d);
+  std::size_t i = 0;
+  M found = hn::IsNaN(hn::Zero(d));
+  for (; i + step <= n; i += step) found = hn::Or(found, hn::IsNaN(hn::LoadU(d, x + i)));
+  bool any = !hn::AllFalse(d, found);
+  for (; i < n; ++i) any = any || x[i] != x[i];
+  return any;
+}
+
+void run_points_of_target(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block,
+                          double* slots) {
+  const std::size_t step = hn::Lanes(D());
+  for (std::size_t first = 0; first < n; first += block) {
+    const std::size_t count = n - first < block ? n - first : block;
+    run_block(tape, arrays, first, count, {slots, (count + step - 1) / step * step});
+  }
+}
+
+}  // namespace
+}  // namespace taut::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace taut::detail {
+
+HWY_EXPORT(lanes_of_target);
+HWY_EXPORT(any_nan_of_target);
+HWY_EXPORT(run_points_of_target);
+
+std::size_t num_lanes() { return HWY_DYNAMIC_DISPATCH(lanes_of_target)(); }
+
+bool any_nan(const double* x, std::size_t n) { return HWY_DYNAMIC_DISPATCH(any_nan_of_target)(x, n); }
+
+void run_points(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block, double* slots) {
+  HWY_DYNAMIC_DISPATCH(run_points_of_target)(tape, arrays, n, block, slots);
+}
+
+}  // namespace taut::detail
+#endif

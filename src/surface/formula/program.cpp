@@ -1,0 +1,126 @@
+#include "surface/formula/program.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace taut::detail {
+namespace {
+
+/// A Hessian of more operations than this is not compiled but taken column by column.
+constexpr std::size_t kMaxHessianNodes = 200'000;
+/// Forward mode is tried where it can win: few variables, not a huge formula.
+constexpr Index kMaxForwardDim = 4;
+constexpr std::size_t kMaxForwardNodes = 20'000;
+
+std::vector<NodeId> nodes_of(const std::vector<Partial>& partials) {
+  std::vector<NodeId> nodes;
+  nodes.reserve(partials.size());
+  for (const Partial& partial : partials) nodes.push_back(partial.node);
+  return nodes;
+}
+
+}  // namespace
+
+FormulaProgram::FormulaProgram(Graph graph, std::vector<NodeId> components, Index dim)
+    : dim_(dim), components_(std::move(components)), graph_(std::move(graph)) {}
+
+std::vector<InputArray> FormulaProgram::inputs() const {
+  const auto d = static_cast<std::uint32_t>(dim_);
+  const auto k = static_cast<std::uint32_t>(codim());
+  return {{0, d}, {d, k}, {d + k, d}};
+}
+
+NodeId FormulaProgram::weighted(NodeId node) const {
+  return codim() == 1 ? graph_.multiply(node, graph_.variable(static_cast<std::uint32_t>(dim_))) : node;
+}
+
+void FormulaProgram::differentiate() const {
+  if (differentiated_) return;
+  const auto d = static_cast<std::uint32_t>(dim_);
+  const auto k = static_cast<std::uint32_t>(codim());
+  for (std::uint32_t i = 0; i < k; ++i) append_gradient(graph_, components_[i], d, i, jacobian_);
+  if (dim_ <= kMaxForwardDim && graph_.size() < kMaxForwardNodes) {
+    std::vector<Partial> forward;
+    for (std::uint32_t i = 0; i < k; ++i) append_gradient_forward(graph_, components_[i], d, i, forward);
+    const auto cost = [&](const std::vector<Partial>& partials) {
+      std::vector<NodeId> roots = nodes_of(partials);
+      roots.insert(roots.end(), components_.begin(), components_.end());
+      return graph_.reachable(roots).size();
+    };
+    if (cost(forward) < cost(jacobian_)) jacobian_ = std::move(forward);
+  }
+  sparse_jacobian_ = jacobian_.size() < components_.size() * static_cast<std::size_t>(dim_);
+  if (k == 1) {
+    gradient_ = jacobian_;
+  } else {
+    std::vector<NodeId> terms;
+    for (std::uint32_t i = 0; i < k; ++i) terms.push_back(graph_.multiply(components_[i], graph_.variable(d + i)));
+    append_gradient(graph_, graph_.sum(terms), d, 0, gradient_);
+  }
+  differentiated_ = true;
+}
+
+Tape FormulaProgram::compile_outputs(bool with_jacobian, const std::vector<Partial>* hessian) const {
+  const auto d = static_cast<std::uint32_t>(dim_);
+  std::vector<Output> outputs;
+  for (std::uint32_t i = 0; i < components_.size(); ++i) outputs.push_back({0, i, components_[i]});
+  if (with_jacobian) {
+    for (const Partial& partial : jacobian_) outputs.push_back({1, partial.row * d + partial.column, partial.node});
+  }
+  if (hessian != nullptr) {
+    for (const Partial& partial : *hessian) {
+      const NodeId node = weighted(partial.node);
+      outputs.push_back({2, partial.column * d + partial.row, node});
+      if (partial.row != partial.column) outputs.push_back({2, partial.row * d + partial.column, node});
+    }
+  }
+  return compile(graph_, inputs(), outputs);
+}
+
+const Tape& FormulaProgram::value() const {
+  const std::scoped_lock lock(mutex_);
+  if (!value_tape_) value_tape_ = compile_outputs(false, nullptr);
+  return *value_tape_;
+}
+
+const Tape& FormulaProgram::jacobian() const {
+  const std::scoped_lock lock(mutex_);
+  if (!jacobian_tape_) {
+    differentiate();
+    jacobian_tape_ = compile_outputs(true, nullptr);
+  }
+  return *jacobian_tape_;
+}
+
+const Tape* FormulaProgram::hessian() const {
+  const std::scoped_lock lock(mutex_);
+  if (hessian_too_large_) return nullptr;
+  if (!hessian_tape_) {
+    differentiate();
+    std::vector<Partial> hessian;
+    if (!append_hessian(graph_, gradient_, kMaxHessianNodes, hessian)) {
+      hessian_too_large_ = true;
+      return nullptr;
+    }
+    hessian_tape_ = compile_outputs(true, &hessian);
+  }
+  return &*hessian_tape_;
+}
+
+const Tape& FormulaProgram::hessian_times() const {
+  const std::scoped_lock lock(mutex_);
+  if (!hessian_times_tape_) {
+    differentiate();
+    const auto d = static_cast<std::uint32_t>(dim_);
+    const auto k = static_cast<std::uint32_t>(codim());
+    std::vector<Partial> product;
+    append_directional(graph_, gradient_, d, d + k, product);
+    std::vector<Output> outputs;
+    for (std::uint32_t i = 0; i < k; ++i) outputs.push_back({0, i, components_[i]});
+    for (const Partial& partial : product) outputs.push_back({2, partial.row, weighted(partial.node)});
+    hessian_times_tape_ = compile(graph_, inputs(), outputs);
+  }
+  return *hessian_times_tape_;
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "surface/formula/expression.hpp"
+
+namespace taut::detail {
+
+/// What one instruction does. `_c` and `c_` mark the operand that is a constant held in the instruction.
+enum class Code : std::uint8_t {
+  input,            // slot dst = entry b of input array a
+  output,           // entry b of output array c = slot a
+  output_constant,  // entry b of output array c = value
+  constant,         // slot dst = value
+  negate,
+  absolute,
+  sign,
+  square,
+  odd_power,  // exponent b
+  sqrt,
+  cbrt,
+  exp,
+  log,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  sinh,
+  cosh,
+  tanh,
+  add,
+  add_c,
+  subtract,
+  c_subtract,
+  multiply,
+  multiply_c,
+  divide,
+  divide_c,
+  c_divide,
+  minimum,
+  maximum,
+  power,
+  atan2,
+  less_equal,
+  choose,
+  keep,
+  drop,
+};
+
+struct Instruction {
+  Code code = Code::constant;
+  std::uint32_t dst = 0;
+  std::uint32_t a = 0;
+  std::uint32_t b = 0;
+  std::uint32_t c = 0;
+  double value = 0;
+};
+
+/// A straight-line program: read inputs, compute in slots, write outputs. Immutable; what runs it brings the slots.
+struct Tape {
+  std::vector<Instruction> instructions;
+  std::uint32_t num_slots = 0;
+};
+
+/// A variable of the graph is an entry of an input array: variables are numbered array by array.
+struct InputArray {
+  std::uint32_t first = 0;  // number of its first variable
+  std::uint32_t size = 0;
+};
+
+/// Entry `entry` of output array `array` is to hold `node`.
+struct Output {
+  std::uint32_t array;
+  std::uint32_t entry;
+  NodeId node;
+};
+
+/// Compiles what `outputs` need: dead parts are left out, a slot is reused as soon as its value is no longer needed.
+[[nodiscard]] Tape compile(const Graph& graph, const std::vector<InputArray>& inputs,
+                           const std::vector<Output>& outputs);
+
+}  // namespace taut::detail
