@@ -1,0 +1,112 @@
+#include "curve/flow_nodes.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace taut::detail {
+
+void FlowNodes::evaluate(Evaluator& evaluator, Points points) {
+  const Index n = points.cols();
+  const Index d = dim_;
+  const Index k = codim_;
+  points_ = std::move(points);
+  value_.resize(k, n);
+  jacobian_.resize(d * k, n);
+  normals_.resize(d * k, n);
+  triangle_.resize(k * k, n);
+  correction_.resize(d, n);
+  evaluator.evaluate({.n = n, .x = points_.data(), .value = value_.data(), .jacobian = jacobian_.data()});
+
+  // Typical size of each gradient along the curve: what "small" is measured against, whatever the scale of F.
+  Vector typical = Vector::Zero(k);
+  for (Index i = 0; i < n; ++i) typical = typical.cwiseMax(gradients(i).colwise().norm().transpose());
+  rank_margin_ = 1;
+  for (Index i = 0; i < n; ++i) {
+    auto normal = Eigen::Map<Eigen::MatrixXd>(normals_.data() + i * d * k, d, k);
+    auto triangle = Eigen::Map<Eigen::MatrixXd>(triangle_.data() + i * k * k, k, k);
+    if (k == 1) {
+      const double size = gradients(i).norm();
+      triangle(0, 0) = size;
+      normal = gradients(i) / size;
+      correction_.col(i) = normal * (-value_(0, i) / size);
+      rank_margin_ = std::min(rank_margin_, size / typical(0));
+    } else {
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gradients(i));
+      triangle = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
+      normal = qr.householderQ() * Eigen::MatrixXd::Identity(d, k);
+      const Vector w = triangle.triangularView<Eigen::Upper>().transpose().solve(value_.col(i));
+      correction_.col(i) = -(normal * w);
+      for (Index j = 0; j < k; ++j) rank_margin_ = std::min(rank_margin_, std::abs(triangle(j, j)) / typical(j));
+    }
+    if (!correction_.col(i).allFinite() || !normal.allFinite()) rank_margin_ = 0;
+  }
+  if (!std::isfinite(rank_margin_)) rank_margin_ = 0;
+}
+
+void FlowNodes::multipliers(Index i, const VectorIn& v, Eigen::Ref<Vector> lambda) const {
+  const auto triangle = Eigen::Map<const Eigen::MatrixXd>(triangle_.data() + i * codim_ * codim_, codim_, codim_);
+  lambda.noalias() = normals(i).transpose() * v;
+  triangle.triangularView<Eigen::Upper>().solveInPlace(lambda);
+}
+
+Points FlowNodes::corrected() const {
+  Points moved = points_;
+  const Index inner = size() - 2;
+  moved.middleCols(1, inner) += correction_.middleCols(1, inner);
+  return moved;
+}
+
+Repose measure_repose(const FlowNodes& nodes, const PointsIn& points) {
+  Repose repose;
+  Vector last = points.col(1) - points.col(0);
+  double last_interval = last.norm();
+  for (Index i = 1; i + 1 < points.cols(); ++i) {
+    const Vector next = points.col(i + 1) - points.col(i);
+    const double next_interval = next.norm();
+    const double mean = 0.5 * (next_interval + last_interval);
+    const auto normal = nodes.normals(i);
+    const auto tangential = [&](Vector v) -> Vector { return v - normal * (normal.transpose() * v); };
+    const Vector along = tangential(next / next_interval + last / last_interval).normalized();
+    const Vector curvature = tangential(next / next_interval - last / last_interval) / mean;  // (3), Figure 2
+    // Written so that a NaN does not pass for a straight curve.
+    const double across = (curvature - along * along.dot(curvature)).norm();
+    if (!(across <= repose.geodesic_curvature)) repose.geodesic_curvature = across;
+    const double uneven = std::abs(along.dot(next - last)) / mean;
+    if (!(uneven <= repose.unevenness)) repose.unevenness = uneven;
+    last = next;
+    last_interval = next_interval;
+  }
+  return repose;
+}
+
+double polyline_length(const PointsIn& points) {
+  double length = 0;
+  for (Index i = 0; i + 1 < points.cols(); ++i) length += (points.col(i + 1) - points.col(i)).norm();
+  return length;
+}
+
+Points resample(const PointsIn& points, Index num_intervals) {
+  const Index m = points.cols() - 1;
+  std::vector<double> arc(static_cast<std::size_t>(m + 1), 0.0);
+  for (Index i = 0; i < m; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    arc[at + 1] = arc[at] + (points.col(i + 1) - points.col(i)).norm();
+  }
+  Points result(points.rows(), num_intervals + 1);
+  result.col(0) = points.col(0);
+  result.col(num_intervals) = points.col(m);
+  Index piece = 0;
+  for (Index j = 1; j < num_intervals; ++j) {
+    const double s = arc.back() * static_cast<double>(j) / static_cast<double>(num_intervals);
+    while (piece + 1 < m && arc[static_cast<std::size_t>(piece + 1)] < s) ++piece;
+    const double begin = arc[static_cast<std::size_t>(piece)];
+    const double width = arc[static_cast<std::size_t>(piece + 1)] - begin;
+    const double u = width > 0 ? std::clamp((s - begin) / width, 0.0, 1.0) : 0.0;
+    result.col(j) = (1 - u) * points.col(piece) + u * points.col(piece + 1);
+  }
+  return result;
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,86 @@
+#include "curve/plane_projection.hpp"
+
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace taut::detail {
+namespace {
+
+constexpr int kMaxSteps = 60;
+
+/// -(J Pi)^+ F with Pi = I - a a^T. `gradients`: d x k.
+Vector step_in_plane(const Eigen::Ref<const Eigen::MatrixXd>& gradients, const VectorIn& value, const VectorIn& axis) {
+  const Eigen::MatrixXd restricted = gradients - axis * (axis.transpose() * gradients);
+  if (gradients.cols() == 1) return restricted.col(0) * (-value(0) / restricted.squaredNorm());
+  return -restricted.transpose().completeOrthogonalDecomposition().solve(value);
+}
+
+/// Length of J^+ F: how far from the surface, to first order.
+double residual_of(const Eigen::Ref<const Eigen::MatrixXd>& gradients, const VectorIn& value) {
+  if (gradients.cols() == 1) return std::abs(value(0)) / gradients.norm();
+  return gradients.transpose().completeOrthogonalDecomposition().solve(value).norm();
+}
+
+}  // namespace
+
+Eigen::Array<bool, Eigen::Dynamic, 1> project_in_planes(Evaluator& evaluator, Index dim, Index codim,
+                                                        Eigen::Ref<Points> points, const PointsIn& axes,
+                                                        const VectorIn& radius, double tolerance) {
+  const Index n = points.cols();
+  const Index d = dim;
+  const Index k = codim;
+  Eigen::Array<bool, Eigen::Dynamic, 1> found = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(n, false);
+  const Points origin = points;
+  Points step = Points::Zero(d, n);
+  Vector residual = Vector::Constant(n, std::numeric_limits<double>::infinity());
+  std::vector<Index> active(static_cast<std::size_t>(n));
+  for (Index j = 0; j < n; ++j) active[static_cast<std::size_t>(j)] = j;
+
+  Points trial;
+  Points value;
+  Points jacobian;
+  for (int round = 0; round < kMaxSteps && !active.empty(); ++round) {
+    const auto count = static_cast<Index>(active.size());
+    trial.resize(d, count);
+    value.resize(k, count);
+    jacobian.resize(d * k, count);
+    for (Index a = 0; a < count; ++a) {
+      const Index j = active[static_cast<std::size_t>(a)];
+      trial.col(a) = points.col(j) + step.col(j);
+    }
+    evaluator.evaluate({.n = count, .x = trial.data(), .value = value.data(), .jacobian = jacobian.data()});
+    std::vector<Index> still;
+    for (Index a = 0; a < count; ++a) {
+      const Index j = active[static_cast<std::size_t>(a)];
+      const auto gradients = Eigen::Map<const Eigen::MatrixXd>(jacobian.data() + a * d * k, d, k);
+      const double at_trial = residual_of(gradients, value.col(a));
+      const bool better = at_trial < residual(j);
+      if (!better && std::isfinite(residual(j))) {  // overshot: half the step
+        step.col(j) *= 0.5;
+        if (step.col(j).norm() > 0.5 * tolerance) still.push_back(j);
+        continue;
+      }
+      if (!std::isfinite(at_trial)) continue;
+      points.col(j) = trial.col(a);
+      residual(j) = at_trial;
+      if (at_trial <= tolerance) {
+        found(j) = true;
+        continue;
+      }
+      step.col(j) = step_in_plane(gradients, value.col(a), axes.col(j));
+      if (!step.col(j).allFinite()) continue;
+      const double longest = 0.5 * radius(j);
+      const double size = step.col(j).norm();
+      if (size > longest) step.col(j) *= longest / size;
+      const Vector reach = points.col(j) + step.col(j) - origin.col(j);
+      if (reach.norm() > radius(j)) step.col(j) = origin.col(j) + reach * (radius(j) / reach.norm()) - points.col(j);
+      if (step.col(j).norm() > 0) still.push_back(j);
+    }
+    active = std::move(still);
+  }
+  return found;
+}
+
+}  // namespace taut::detail
