@@ -2,13 +2,10 @@
 
 #include <cstddef>
 
-#include "taut/core/context.hpp"
+#include "core/memory_limit.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
-
-/// Bytes a job under this context may hold: its limit, or half of the machine's memory.
-[[nodiscard]] std::size_t memory_limit(const Context& context);
 
 /// Throws OutOfMemory when `bytes` is above `limit`, saying how many cells of which size there are so far and what to
 /// do.
