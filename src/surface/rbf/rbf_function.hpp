@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+
+#include "surface/rbf/kernel_sum.hpp"
+#include "surface/rbf/polynomial.hpp"
+#include "taut/surface/implicit_function.hpp"
+#include "taut/surface/rbf.hpp"
+
+namespace taut::detail {
+
+/// F of an RbfModel, in model units.
+class RbfFunction : public ImplicitFunction {
+ public:
+  explicit RbfFunction(const RbfModel& model);
+  [[nodiscard]] Index dim() const override { return origin_.size(); }
+  [[nodiscard]] Index codim() const override { return 1; }
+  [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
+  [[nodiscard]] std::string_view kind() const override { return "rbf"; }
+
+  /// Value, gradient (d) and Hessian (d x d) at one point; null outputs are not computed.
+  void evaluate(const double* x, double* value, double* gradient, double* hessian) const;
+
+ private:
+  Vector origin_;
+  double scale_;
+  PolynomialSpace space_;
+  Vector polynomial_;
+  KernelSum sum_;
+};
+
+}  // namespace taut::detail
