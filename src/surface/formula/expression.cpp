@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "surface/formula/scalar_math.hpp"
+
 namespace taut::detail {
 namespace {
 
@@ -64,7 +66,7 @@ double fold(Op op, double a, double b, std::uint32_t odd_exponent) {
     case Op::divide: return a / b;
     case Op::minimum: return with_nan(a, b, a <= b ? a : b);
     case Op::maximum: return with_nan(a, b, a >= b ? a : b);
-    case Op::power: return with_nan(a, b, std::pow(a, b));
+    case Op::power: return power_of(a, b);
     case Op::atan2: return std::atan2(a, b);
     default: return std::numeric_limits<double>::quiet_NaN();
   }

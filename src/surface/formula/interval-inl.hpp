@@ -226,7 +226,6 @@ HWY_INLINE Interval corners(const Interval& a, const Interval& b, const F& f) {
 /// a^b. For a >= 0 monotone in each operand; a negative base has a value only for integer exponents, which are told
 /// apart only when the exponent is one number.
 HWY_INLINE Interval power(const Interval& a, const Interval& b) {
-  const auto f = [](double base, double exponent) { return std::pow(base, exponent); };
   const V zero = lanes(0);
   const M fixed = hn::Eq(b.lower, b.upper);
   const M whole = hn::And(fixed, hn::Eq(b.lower, hn::Floor(b.lower)));
@@ -234,7 +233,7 @@ HWY_INLINE Interval power(const Interval& a, const Interval& b) {
   const M below = hn::Lt(a.lower, zero);
   // A fractional exponent sees the part of the base that is not negative.
   const Interval base{hn::IfThenElse(below, zero, a.lower), hn::Max(a.upper, zero), a.undefined};
-  Interval result = corners(base, b, f);
+  Interval result = corners(base, b, power_of);
   const M unknown = hn::And(below, hn::Not(fraction));
   result.lower = hn::IfThenElse(unknown, lanes(-kInfinity), result.lower);
   result.upper = hn::IfThenElse(unknown, lanes(kInfinity), result.upper);

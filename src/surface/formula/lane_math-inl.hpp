@@ -17,6 +17,7 @@
 #include <limits>
 
 #include "hwy/highway.h"
+#include "surface/formula/scalar_math.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace taut::detail::HWY_NAMESPACE {
@@ -229,9 +230,7 @@ HWY_INLINE V sign_lanes(V a) {
   return hn::IfThenElse(hn::Or(hn::Lt(a, lanes(0)), hn::Gt(a, lanes(0))), unit, a);
 }
 
-HWY_INLINE V power_lanes(V a, V b) {
-  return nan_or(a, b, each_lane(a, b, [](double base, double exponent) { return std::pow(base, exponent); }));
-}
+HWY_INLINE V power_lanes(V a, V b) { return each_lane(a, b, power_of); }
 
 HWY_INLINE V atan2_lanes(V y, V x) {
   return each_lane(y, x, [](double sine, double cosine) { return std::atan2(sine, cosine); });
