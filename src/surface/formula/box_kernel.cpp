@@ -42,8 +42,10 @@ HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
   }
 }
 
-void read_box(const BoxArrays& arrays, std::size_t first, std::size_t count, std::uint32_t entry, double* slot,
-              std::size_t size) {
+void read_box(const BoxArrays& arrays, std::size_t first, std::size_t count, std::uint32_t entry, const Block& block,
+              std::uint32_t slot_index) {
+  double* slot = block[slot_index];
+  const std::size_t size = block.size;
   const double* lower = arrays.lower + first * arrays.dim + entry;
   const double* upper = arrays.upper + first * arrays.dim + entry;
   for (std::size_t j = 0; j < size; ++j) {
@@ -51,6 +53,9 @@ void read_box(const BoxArrays& arrays, std::size_t first, std::size_t count, std
     slot[j] = lower[point];
     slot[size + j] = upper[point];
     slot[2 * size + j] = 0;
+  }
+  for (std::size_t i = 0; i < size; i += hn::Lanes(D())) {
+    block.store(from_box(block.load(slot_index, i)), slot_index, i);
   }
 }
 
@@ -74,10 +79,15 @@ void write_bounds(const BoxArrays& arrays, std::size_t first, std::size_t count,
 void run_block(const Tape& tape, const BoxArrays& arrays, std::size_t first, std::size_t count, const Block& block) {
   for (const Instruction& ins : tape.instructions) {
     switch (ins.code) {
-      case Code::input:
-        read_box(arrays, first, count, ins.b, block[ins.dst], block.size);
-        for (std::size_t i = 0; i < block.size; i += hn::Lanes(D())) {
-          block.store(from_box(block.load(ins.dst, i)), ins.dst, i);
+      case Code::input: read_box(arrays, first, count, ins.b, block, ins.dst); break;
+      case Code::input_row:
+        for (std::uint32_t entry = 0; entry < ins.c; ++entry) {
+          read_box(arrays, first, count, entry, block, tape.row_slots[ins.b + entry]);
+        }
+        break;
+      case Code::output_row:
+        for (std::uint32_t entry = 0; entry < ins.a; ++entry) {
+          write_bounds(arrays, first, count, entry, block, tape.row_slots[ins.b + entry]);
         }
         break;
       case Code::output: write_bounds(arrays, first, count, ins.b, block, ins.a); break;

@@ -82,6 +82,9 @@ std::vector<NodeId> Parser::statements(Statements allowed) {
   while (token_.kind != TokenKind::end) {
     const std::size_t column = token_.column;
     statement(allowed);
+    if (components_.size() > static_cast<std::size_t>(kMaxDim)) {
+      fail(column, "more than " + std::to_string(kMaxDim) + " equations");
+    }
     columns_.resize(components_.size(), column);
     if (token_.kind == TokenKind::semicolon) advance();
   }

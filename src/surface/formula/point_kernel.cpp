@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "surface/formula/kernels.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -55,6 +57,88 @@ HWY_INLINE void read_input(const double* entry, std::size_t stride, std::size_t 
   for (std::size_t j = count; j < size; ++j) slot[j] = slot[count - 1];
 }
 
+/// A vector of points of N coordinates each, taken apart into N slots.
+template <std::uint32_t N>
+HWY_INLINE void load_points(const double* from, double* const* slots, std::size_t i) {
+  const D d;
+  V a, b, c, e;
+  if constexpr (N == 1) {
+    hn::Store(hn::LoadU(d, from), d, slots[0] + i);
+  } else if constexpr (N == 2) {
+    hn::LoadInterleaved2(d, from, a, b);
+  } else if constexpr (N == 3) {
+    hn::LoadInterleaved3(d, from, a, b, c);
+    hn::Store(c, d, slots[2] + i);
+  } else {
+    hn::LoadInterleaved4(d, from, a, b, c, e);
+    hn::Store(c, d, slots[2] + i);
+    hn::Store(e, d, slots[3] + i);
+  }
+  if constexpr (N > 1) {
+    hn::Store(a, d, slots[0] + i);
+    hn::Store(b, d, slots[1] + i);
+  }
+}
+
+template <std::uint32_t N>
+HWY_INLINE void read_rows(const double* from, std::size_t stride, std::size_t count, const std::uint32_t* rows,
+                          const Block& block) {
+  const D d;
+  double* slots[N];
+  for (std::uint32_t entry = 0; entry < N; ++entry) slots[entry] = block[rows[entry]];
+  if (count == 1 || stride == 0) {  // one point for all lanes
+    for (std::uint32_t entry = 0; entry < N; ++entry) {
+      const V value = lanes(from[entry]);
+      for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(value, d, slots[entry] + i);
+    }
+    return;
+  }
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) load_points<N>(from + i * N, slots, i);
+  if (i == count) return;
+  HWY_ALIGN double rest[N * HWY_MAX_BYTES / sizeof(double)];
+  for (std::size_t j = 0; j < hn::Lanes(d); ++j) {
+    const std::size_t point = i + j < count ? i + j : count - 1;
+    for (std::uint32_t entry = 0; entry < N; ++entry) rest[j * N + entry] = from[point * N + entry];
+  }
+  load_points<N>(rest, slots, i);
+}
+
+/// N slots into the N entries of each point.
+template <std::uint32_t N>
+HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const std::uint32_t* rows, const Block& block) {
+  const D d;
+  const double* slots[N];
+  for (std::uint32_t entry = 0; entry < N; ++entry) slots[entry] = block[rows[entry]];
+  std::size_t j = 0;
+  if constexpr (N <= 4) {
+    for (; j + hn::Lanes(d) <= count; j += hn::Lanes(d)) {
+      const V a = hn::Load(d, slots[0] + j);
+      if constexpr (N == 1) hn::StoreU(a, d, out + j);
+      if constexpr (N == 2) hn::StoreInterleaved2(a, hn::Load(d, slots[1] + j), d, out + 2 * j);
+      if constexpr (N == 3) {
+        hn::StoreInterleaved3(a, hn::Load(d, slots[1] + j), hn::Load(d, slots[2] + j), d, out + 3 * j);
+      }
+      if constexpr (N == 4) {
+        hn::StoreInterleaved4(a, hn::Load(d, slots[1] + j), hn::Load(d, slots[2] + j), hn::Load(d, slots[3] + j), d,
+                              out + 4 * j);
+      }
+    }
+  }
+  for (; j < count; ++j) {
+    for (std::uint32_t entry = 0; entry < N; ++entry) out[j * N + entry] = slots[entry][j];
+  }
+}
+
+/// Calls body<N>() for a run-time N in 1 .. kMax.
+template <std::uint32_t kMax, class Body>
+HWY_INLINE void with_size(std::uint32_t n, const Body& body) {
+  [&]<std::uint32_t... I>(std::integer_sequence<std::uint32_t, I...>) {
+    (void)((n == I + 1 ? (body.template operator()<I + 1>(), true) : false) || ...);
+  }
+  (std::make_integer_sequence<std::uint32_t, kMax>());
+}
+
 HWY_INLINE M as_mask(V v) { return hn::MaskFromVec(v); }
 
 void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, std::size_t count, const Block& block) {
@@ -64,6 +148,20 @@ void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, s
       case Code::input: {
         const std::size_t stride = arrays.input_stride[ins.a];
         read_input(arrays.input[ins.a] + first * stride + ins.b, stride, count, block[ins.dst], block.size);
+        break;
+      }
+      case Code::input_row: {
+        const std::size_t stride = arrays.input_stride[ins.a];
+        const double* from = arrays.input[ins.a] + first * stride;
+        const std::uint32_t* rows = tape.row_slots.data() + ins.b;
+        with_size<kMaxInputRow>(ins.c, [&]<std::uint32_t N>() { read_rows<N>(from, stride, count, rows, block); });
+        break;
+      }
+      case Code::output_row: {
+        if (arrays.output[ins.c] == nullptr) break;
+        double* out = arrays.output[ins.c] + first * ins.a;
+        const std::uint32_t* rows = tape.row_slots.data() + ins.b;
+        with_size<kMaxOutputRow>(ins.a, [&]<std::uint32_t N>() { write_rows<N>(out, count, rows, block); });
         break;
       }
       case Code::output: {

@@ -49,7 +49,6 @@ void FormulaProgram::differentiate() const {
     };
     if (cost(forward) < cost(jacobian_)) jacobian_ = std::move(forward);
   }
-  sparse_jacobian_ = jacobian_.size() < components_.size() * static_cast<std::size_t>(dim_);
   if (k == 1) {
     gradient_ = jacobian_;
   } else {
@@ -74,7 +73,23 @@ Tape FormulaProgram::compile_outputs(bool with_jacobian, const std::vector<Parti
       if (partial.row != partial.column) outputs.push_back({2, partial.row * d + partial.column, node});
     }
   }
-  return compile(graph_, inputs(), outputs);
+  const auto k = static_cast<std::uint32_t>(codim());
+  return compile_rows({k, with_jacobian ? k * d : 0, hessian != nullptr ? d * d : 0}, std::move(outputs));
+}
+
+/// Adds the zeros of arrays that are written a whole row at a time. Arrays of size 0 are not asked for.
+Tape FormulaProgram::compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs) const {
+  for (std::uint32_t array = 0; array < sizes.size(); ++array) {
+    if (sizes[array] > kMaxOutputRow) continue;
+    std::vector<bool> named(sizes[array]);
+    for (const Output& output : outputs) {
+      if (output.array == array) named[output.entry] = true;
+    }
+    for (std::uint32_t entry = 0; entry < named.size(); ++entry) {
+      if (!named[entry]) outputs.push_back({array, entry, graph_.constant(0)});
+    }
+  }
+  return compile(graph_, inputs(), sizes, outputs);
 }
 
 const Tape& FormulaProgram::value() const {
@@ -118,7 +133,7 @@ const Tape& FormulaProgram::hessian_times() const {
     std::vector<Output> outputs;
     for (std::uint32_t i = 0; i < k; ++i) outputs.push_back({0, i, components_[i]});
     for (const Partial& partial : product) outputs.push_back({2, partial.row, weighted(partial.node)});
-    hessian_times_tape_ = compile(graph_, inputs(), outputs);
+    hessian_times_tape_ = compile_rows({k, 0, d}, std::move(outputs));
   }
   return *hessian_times_tape_;
 }

@@ -15,7 +15,8 @@ namespace taut::detail {
 /// threads.
 ///
 /// Input arrays: 0 x (d), 1 weight (k), 2 direction (d). Output arrays: 0 value (k), 1 Jacobian (k d), 2 Hessian (d d)
-/// or Hessian times direction (d). Entries of the Jacobian and the Hessian that are zero whatever x is are not written.
+/// or Hessian times direction (d). Arrays of more than kMaxOutputRow entries are written only where they are not zero
+/// whatever x is.
 class FormulaProgram {
  public:
   FormulaProgram(Graph graph, std::vector<NodeId> components, Index dim);
@@ -31,12 +32,10 @@ class FormulaProgram {
   /// Weighted Hessian times direction: linear in the size of the formula.
   [[nodiscard]] const Tape& hessian_times() const;
 
-  /// True when some entry of the Jacobian is zero whatever x is.
-  [[nodiscard]] bool sparse_jacobian() const { return sparse_jacobian_; }
-
  private:
   void differentiate() const;
   [[nodiscard]] Tape compile_outputs(bool with_jacobian, const std::vector<Partial>* hessian) const;
+  [[nodiscard]] Tape compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs) const;
   [[nodiscard]] NodeId weighted(NodeId node) const;
   [[nodiscard]] std::vector<InputArray> inputs() const;
 
@@ -48,7 +47,6 @@ class FormulaProgram {
   mutable std::mutex mutex_;
   mutable Graph graph_;
   mutable bool differentiated_ = false;
-  mutable bool sparse_jacobian_ = false;
   mutable bool hessian_too_large_ = false;
   mutable std::vector<Partial> jacobian_;  // row: component
   mutable std::vector<Partial> gradient_;  // of sum_i weight_i F_i; when k = 1 of F, weighted at the end

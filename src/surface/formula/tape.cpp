@@ -84,44 +84,63 @@ Form form_of(const Graph& graph, NodeId id) {
 
 class Compiler {
  public:
-  Compiler(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<Output>& outputs)
-      : graph_(graph), inputs_(inputs), outputs_(outputs) {}
+  Compiler(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<std::uint32_t>& output_sizes,
+           const std::vector<Output>& outputs)
+      : graph_(graph), inputs_(inputs), output_sizes_(output_sizes), outputs_(outputs), read_(inputs.size()) {}
 
   Tape compile();
 
  private:
+  [[nodiscard]] bool in_row(const Output& output) const { return output_sizes_[output.array] <= kMaxOutputRow; }
   void find_uses();
   void emit(NodeId id);
+  void emit_input(NodeId id);
   void emit_outputs(NodeId id);
-  void release(NodeId id);
+  void emit_rows();
+  std::uint32_t slot_of(NodeId id);
   std::uint32_t acquire();
+  void release(NodeId id);
+
+  static constexpr std::uint32_t kNoSlot = ~std::uint32_t{0};
 
   const Graph& graph_;
   const std::vector<InputArray>& inputs_;
+  const std::vector<std::uint32_t>& output_sizes_;
   const std::vector<Output>& outputs_;
   Tape tape_;
   std::vector<NodeId> order_;
-  std::vector<std::uint32_t> uses_;  // instructions still to come that read a node's slot
+  std::vector<std::uint32_t> uses_;  // readers of a node's slot still to come
   std::vector<std::uint32_t> slot_;
   std::vector<std::uint32_t> free_;
-  std::vector<std::pair<NodeId, std::uint32_t>> outputs_by_node_;
+  std::vector<bool> read_;                                        // input arrays that were read as rows
+  std::vector<std::vector<NodeId>> row_nodes_;                    // by input array: the variables in it, by entry
+  std::vector<std::pair<NodeId, std::uint32_t>> single_outputs_;  // by node: outputs written as soon as they are known
 };
 
 void Compiler::find_uses() {
   std::vector<NodeId> roots;
   for (std::uint32_t i = 0; i < outputs_.size(); ++i) {
-    if (graph_.is_constant(outputs_[i].node)) continue;
-    roots.push_back(outputs_[i].node);
-    outputs_by_node_.emplace_back(outputs_[i].node, i);
+    const Output& output = outputs_[i];
+    if (!in_row(output) && graph_.is_constant(output.node)) continue;
+    roots.push_back(output.node);
+    if (!in_row(output)) single_outputs_.emplace_back(output.node, i);
   }
-  std::sort(outputs_by_node_.begin(), outputs_by_node_.end());
+  std::sort(single_outputs_.begin(), single_outputs_.end());
   order_ = graph_.reachable(roots);
   uses_.assign(order_.empty() ? 0 : order_.back() + std::size_t{1}, 0);
-  slot_.resize(uses_.size());
+  slot_.assign(uses_.size(), kNoSlot);
   for (const NodeId root : roots) ++uses_[root];
-  for (std::size_t i = order_.size(); i-- > 0;) {
-    const Form form = form_of(graph_, order_[i]);
+  row_nodes_.resize(inputs_.size());
+  for (const NodeId id : order_) {
+    const Form form = form_of(graph_, id);
     for (int k = 0; k < form.num_slots; ++k) ++uses_[form.slots[k]];
+    if (form.code != Code::input) continue;
+    for (std::size_t array = 0; array < inputs_.size(); ++array) {
+      const std::uint32_t entry = graph_[id].a - inputs_[array].first;
+      if (entry >= inputs_[array].size || inputs_[array].size > kMaxInputRow) continue;
+      row_nodes_[array].resize(inputs_[array].size, kNoNode);
+      row_nodes_[array][entry] = id;
+    }
   }
 }
 
@@ -136,20 +155,52 @@ void Compiler::release(NodeId id) {
   if (--uses_[id] == 0) free_.push_back(slot_[id]);
 }
 
-void Compiler::emit(NodeId id) {
-  const Node& node = graph_[id];
-  const Form form = form_of(graph_, id);
-  Instruction instruction{.code = form.code, .value = form.value};
-  if (form.code == Code::input) {
-    std::uint32_t array = 0;
-    while (node.a - inputs_[array].first >= inputs_[array].size) ++array;
-    instruction.a = array;
-    instruction.b = node.a - inputs_[array].first;
+/// Constants get their slot when it is first needed.
+std::uint32_t Compiler::slot_of(NodeId id) {
+  if (slot_[id] == kNoSlot) {
+    slot_[id] = acquire();
+    tape_.instructions.push_back({.code = Code::constant, .dst = slot_[id], .value = graph_[id].value});
   }
-  if (node.op == Op::odd_power) instruction.b = node.b;
-  if (form.num_slots > 0) instruction.a = slot_[form.slots[0]];
-  if (form.num_slots > 1) instruction.b = slot_[form.slots[1]];
-  if (form.num_slots > 2) instruction.c = slot_[form.slots[2]];
+  return slot_[id];
+}
+
+void Compiler::emit_input(NodeId id) {
+  std::uint32_t array = 0;
+  while (graph_[id].a - inputs_[array].first >= inputs_[array].size) ++array;
+  const std::uint32_t size = inputs_[array].size;
+  if (size > kMaxInputRow) {
+    slot_[id] = acquire();
+    tape_.instructions.push_back(
+        {.code = Code::input, .dst = slot_[id], .a = array, .b = graph_[id].a - inputs_[array].first});
+    return;
+  }
+  if (read_[array]) return;
+  read_[array] = true;
+  const auto first = static_cast<std::uint32_t>(tape_.row_slots.size());
+  tape_.instructions.push_back({.code = Code::input_row, .a = array, .b = first, .c = size});
+  std::vector<std::uint32_t> unused;
+  for (const NodeId node : row_nodes_[array]) {
+    tape_.row_slots.push_back(acquire());
+    if (node == kNoNode) {
+      unused.push_back(tape_.row_slots.back());
+    } else {
+      slot_[node] = tape_.row_slots.back();
+    }
+  }
+  free_.insert(free_.end(), unused.begin(), unused.end());
+}
+
+void Compiler::emit(NodeId id) {
+  const Form form = form_of(graph_, id);
+  if (form.code == Code::input) {
+    emit_input(id);
+    return;
+  }
+  Instruction instruction{.code = form.code, .value = form.value};
+  if (form.code == Code::odd_power) instruction.b = graph_[id].b;
+  if (form.num_slots > 0) instruction.a = slot_of(form.slots[0]);
+  if (form.num_slots > 1) instruction.b = slot_of(form.slots[1]);
+  if (form.num_slots > 2) instruction.c = slot_of(form.slots[2]);
   // Lanes are read before they are written, so a result may take the slot of an operand that ends here.
   for (int k = 0; k < form.num_slots; ++k) release(form.slots[k]);
   instruction.dst = slot_[id] = acquire();
@@ -157,33 +208,53 @@ void Compiler::emit(NodeId id) {
 }
 
 void Compiler::emit_outputs(NodeId id) {
-  for (auto at = std::lower_bound(outputs_by_node_.begin(), outputs_by_node_.end(), std::pair{id, std::uint32_t{0}});
-       at != outputs_by_node_.end() && at->first == id; ++at) {
+  for (auto at = std::lower_bound(single_outputs_.begin(), single_outputs_.end(), std::pair{id, std::uint32_t{0}});
+       at != single_outputs_.end() && at->first == id; ++at) {
     const Output& output = outputs_[at->second];
     tape_.instructions.push_back({.code = Code::output, .a = slot_[id], .b = output.entry, .c = output.array});
     release(id);
   }
 }
 
+void Compiler::emit_rows() {
+  for (std::uint32_t array = 0; array < output_sizes_.size(); ++array) {
+    std::vector<NodeId> row;
+    for (const Output& output : outputs_) {
+      if (output.array != array || !in_row(output)) continue;
+      row.resize(output_sizes_[array]);
+      row[output.entry] = output.node;
+    }
+    if (row.empty()) continue;
+    const Instruction instruction{.code = Code::output_row,
+                                  .a = static_cast<std::uint32_t>(row.size()),
+                                  .b = static_cast<std::uint32_t>(tape_.row_slots.size()),
+                                  .c = array};
+    for (const NodeId node : row) tape_.row_slots.push_back(slot_of(node));
+    tape_.instructions.push_back(instruction);
+  }
+}
+
 Tape Compiler::compile() {
   find_uses();
   for (const Output& output : outputs_) {
-    if (!graph_.is_constant(output.node)) continue;
+    if (in_row(output) || !graph_.is_constant(output.node)) continue;
     tape_.instructions.push_back(
         {.code = Code::output_constant, .b = output.entry, .c = output.array, .value = graph_[output.node].value});
   }
   for (const NodeId id : order_) {
-    if (uses_[id] == 0) continue;  // a constant that every user holds in its instruction
+    if (graph_.is_constant(id)) continue;
     emit(id);
     emit_outputs(id);
   }
+  emit_rows();
   return std::move(tape_);
 }
 
 }  // namespace
 
-Tape compile(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<Output>& outputs) {
-  return Compiler(graph, inputs, outputs).compile();
+Tape compile(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<std::uint32_t>& output_sizes,
+             const std::vector<Output>& outputs) {
+  return Compiler(graph, inputs, output_sizes, outputs).compile();
 }
 
 }  // namespace taut::detail

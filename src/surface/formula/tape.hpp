@@ -11,7 +11,9 @@ namespace taut::detail {
 /// What one instruction does. `_c` and `c_` mark the operand that is a constant held in the instruction.
 enum class Code : std::uint8_t {
   input,            // slot dst = entry b of input array a
+  input_row,        // the slots row_slots[b ...] = all c entries of input array a
   output,           // entry b of output array c = slot a
+  output_row,       // all a entries of output array c = the slots row_slots[b ...]
   output_constant,  // entry b of output array c = value
   constant,         // slot dst = value
   negate,
@@ -63,8 +65,14 @@ struct Instruction {
 /// A straight-line program: read inputs, compute in slots, write outputs. Immutable; what runs it brings the slots.
 struct Tape {
   std::vector<Instruction> instructions;
+  std::vector<std::uint32_t> row_slots;
   std::uint32_t num_slots = 0;
 };
+
+/// Input arrays of at most kMaxInputRow entries a point are read, and output arrays of at most kMaxOutputRow written, a
+/// whole point at a time: the strided memory traffic is what small formulas spend most of their time on.
+inline constexpr std::uint32_t kMaxInputRow = 4;
+inline constexpr std::uint32_t kMaxOutputRow = 16;
 
 /// A variable of the graph is an entry of an input array: variables are numbered array by array.
 struct InputArray {
@@ -80,7 +88,9 @@ struct Output {
 };
 
 /// Compiles what `outputs` need: dead parts are left out, a slot is reused as soon as its value is no longer needed.
+/// output_sizes[i] is the number of entries of output array i; of an array with at most kMaxOutputRow entries,
+/// `outputs` names all or none.
 [[nodiscard]] Tape compile(const Graph& graph, const std::vector<InputArray>& inputs,
-                           const std::vector<Output>& outputs);
+                           const std::vector<std::uint32_t>& output_sizes, const std::vector<Output>& outputs);
 
 }  // namespace taut::detail
