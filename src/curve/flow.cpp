@@ -23,7 +23,8 @@ using detail::FlowState;
 constexpr double kDefaultAccuracy = 2e-5;  // (A1) over the length, when no spacing is asked for
 constexpr Index kFewestIntervals = 16;
 constexpr Index kMostStartIntervals = 4096;
-constexpr double kMostStartNodes = 1e7;
+constexpr double kMostNodes = 1e7;          // with a spacing asked for
+constexpr Index kMostDefaultNodes = 65536;  // without
 constexpr double kCoarsestTurn = 0.5;   // eps / r up to which a polyline still follows its curve (29 degrees a node)
 constexpr double kLooseBound = 1e-4;    // |k_g| length on coarse levels
 constexpr double kDefaultBound = 1e-6;  // |k_g| length at the end: 1e-13 of the length
@@ -70,6 +71,9 @@ class Correction {
     int num_halvings;
   };
   [[nodiscard]] Plan plan(const Points& curve) const;
+
+  /// True when the default accuracy is there, or as many nodes as a default may take.
+  [[nodiscard]] static bool is_resolved(const Points& nodes);
 
   void project_nodes(Points& nodes);
   /// Adds nodes between those farther apart than `threshold`, once each. Returns how many were found.
@@ -223,11 +227,17 @@ Correction::Plan Correction::plan(const Points& curve) const {
   const double wanted = std::max(error.cst / interval * length / std::sqrt(24 * kDefaultAccuracy),
                                  sharpest * length / (0.4 * kCoarsestTurn));
   plan.num_intervals = kFewestIntervals;
-  while (static_cast<double>(plan.num_intervals) < std::min(wanted, 1e6)) {
+  while (static_cast<double>(plan.num_intervals) < std::min(wanted, 0.25 * static_cast<double>(kMostDefaultNodes))) {
     plan.num_intervals *= 2;
     if (static_cast<double>(plan.num_intervals) * kCoarsestTurn > 2 * sharpest * length) ++plan.num_halvings;
   }
   return plan;
+}
+
+bool Correction::is_resolved(const Points& nodes) {
+  const ChordError error = detail::chord_error(nodes);
+  return 2 * nodes.cols() > kMostDefaultNodes ||
+         (error.max_cst <= 0.5 * kCoarsestTurn && error.sum <= 1.5 * kDefaultAccuracy * detail::polyline_length(nodes));
 }
 
 FlowResult Correction::run(const PointsIn& start) {
@@ -238,7 +248,7 @@ FlowResult Correction::run(const PointsIn& start) {
     return result;
   }
   const Plan steps = plan(state.nodes.points());
-  if (static_cast<double>(steps.num_intervals) > kMostStartNodes) {
+  if (static_cast<double>(steps.num_intervals) > kMostNodes) {
     throw OutOfMemory("correct_flow: spacing = " + std::to_string(options_.spacing) + " asks for " +
                       std::to_string(steps.num_intervals) + " nodes; choose a larger spacing");
   }
@@ -247,17 +257,17 @@ FlowResult Correction::run(const PointsIn& start) {
   const double length = detail::polyline_length(state.nodes.points());
   double coarse_length = length;
   Points nodes = detail::resample(state.nodes.points(), coarsest);
-  for (int level = 0; level <= steps.num_halvings; ++level) {
+  for (int level = 0;; ++level) {
     if (level > 0) {
-      const double threshold =
-          0.75 * coarse_length / static_cast<double>(coarsest << (level - 1));  // eps_E of this level: every interval
-      insert(nodes, threshold);
+      coarse_length = detail::polyline_length(nodes);
+      // eps_E of this level: every interval is longer
+      insert(nodes, 0.75 * coarse_length / static_cast<double>(nodes.cols() - 1));
     }
-    state = solver_.relax(std::move(nodes), bound(length, level == steps.num_halvings));
+    const bool last = level >= steps.num_halvings;
+    state = solver_.relax(std::move(nodes), bound(length, last));
     nodes = state.nodes.points();
-    if (state.singular) break;
-    if (level < steps.num_halvings) coarse_length = detail::polyline_length(nodes);
-    context_.report("correct", static_cast<double>(level + 1) / (steps.num_halvings + 1));
+    if (state.singular || (last && (options_.spacing > 0 || is_resolved(nodes)))) break;
+    context_.report("correct", std::min(1.0, static_cast<double>(level + 1) / (steps.num_halvings + 1)));
   }
   judge(state, coarse_length, result);
   return result;

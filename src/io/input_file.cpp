@@ -19,12 +19,6 @@ using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
 
 std::string reason(int error) { return std::generic_category().message(error); }
 
-[[noreturn]] void fail_to_open(const std::string& path, int error) {
-  if (error == ENOENT) throw IoError(path, "no such file; check the name and the folder");
-  if (error == EACCES) throw IoError(path, "no permission to read it; change its mode or copy it");
-  throw IoError(path, "cannot be opened (" + reason(error) + "); check the name");
-}
-
 /// Appends everything that is left in `handle`. A pipe has no size, so it arrives in chunks.
 void read_all(std::FILE* handle, std::size_t expected, InputFile& file) {
   constexpr std::size_t kChunk = std::size_t{1} << 20;
@@ -43,6 +37,12 @@ void read_all(std::FILE* handle, std::size_t expected, InputFile& file) {
 }
 
 }  // namespace
+
+void fail_to_open(const std::string& path, int error) {
+  if (error == ENOENT) throw IoError(path, "no such file; check the name and the folder");
+  if (error == EACCES) throw IoError(path, "no permission to read it; change its mode or copy it");
+  throw IoError(path, "cannot be opened (" + reason(error) + "); check the name");
+}
 
 InputFile read_file(const std::filesystem::path& path, const Context& context) {
   InputFile file{path.string(), {}, context};

@@ -29,6 +29,9 @@ struct InputFile {
 /// Reads a whole file. Throws IoError when it is missing, a directory, unreadable or empty.
 [[nodiscard]] InputFile read_file(const std::filesystem::path& path, const Context& context);
 
+/// Throws the IoError for a file that could not be opened.
+[[noreturn]] void fail_to_open(const std::string& path, int error);
+
 /// Makes text of the bytes: drops a UTF-8 byte order mark, turns lone carriage returns into line ends. Throws IoError
 /// for UTF-16 and for anything that holds a zero byte.
 void normalise_text(InputFile& file);

@@ -12,7 +12,7 @@ namespace taut {
 struct MarchOptions {
   MarchMethod method = MarchMethod::convergent;
   /// Stop as soon as the distance at this point (d, on the surface) is final.
-  std::optional<Vector> target;
+  std::optional<Vector> target = std::nullopt;
 };
 
 /// Marches distances from `sources` (d x m surface points, anywhere in the cells) over the cells; lazy cells are grown

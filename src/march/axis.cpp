@@ -1,0 +1,106 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "march/dimensions.hpp"
+#include "march/growing_field.hpp"
+#include "march/methods.hpp"
+#include "march/start.hpp"
+#include "march/target_watch.hpp"
+
+namespace taut::detail {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The paper's fast marching (sec. 3.2) between cell centres, as if the cells were a piece of flat R^d.
+template <int D, int K>
+class AxisMarch {
+ public:
+  AxisMarch(const MarchTask& task, DistanceField& field)
+      : cells_(task.cells),
+        h_(cells_.grid().size()),
+        growing_(task, field, false),
+        target_(task, field),
+        coordinates_(static_cast<std::size_t>(field.sources.rows())) {
+    for (Index s = 0; s < field.sources.cols(); ++s) {
+      const std::vector<Index> around = cells_around_source(cells_, field.sources.col(s));
+      const auto from_source = [&](Index i) { return (cells_.grid().centre(i) - field.sources.col(s)).norm(); };
+      const Index start = *std::min_element(around.begin(), around.end(),
+                                            [&](Index a, Index b) { return from_source(a) < from_source(b); });
+      growing_.offer(start, from_source(start), s);
+    }
+  }
+
+  void run() {
+    Front& front = growing_.front();
+    while (!front.empty() && !target_.is_final(front.min_key())) {
+      const double distance = front.min_key();
+      const Index i = growing_.pop();
+      growing_.settle(i, distance);
+      for (std::size_t a = 0; a < coordinates_.size(); ++a) {
+        for (const int step : {-1, 1}) {
+          const Index j = neighbour(i, a, step);
+          if (j == CellGrid::kNone || !cells_.valid(j) || growing_.settled(j)) continue;
+          growing_.offer(j, update(j), growing_.source(i));
+        }
+      }
+      target_.settled(cells_.grid().cell(i));
+    }
+    growing_.finish(target_.distance());
+  }
+
+ private:
+  [[nodiscard]] Index neighbour(Index i, std::size_t axis, int step) {
+    const auto cell = cells_.grid().cell(i);
+    std::copy(cell.begin(), cell.end(), coordinates_.begin());
+    coordinates_[axis] += step;
+    return cells_.grid().find(coordinates_);
+  }
+
+  /// Solves sum_a max(u - m_a, 0)^2 = h^2, m_a the smaller settled value on axis a: upwind differences of |grad u| = 1.
+  [[nodiscard]] double update(Index j) {
+    upwind_.clear();
+    for (std::size_t a = 0; a < coordinates_.size(); ++a) {
+      double least = kInfinity;
+      for (const int step : {-1, 1}) {
+        const Index i = neighbour(j, a, step);
+        if (i != CellGrid::kNone) least = std::min(least, growing_.distance(i));
+      }
+      if (least < kInfinity) upwind_.push_back(least);
+    }
+    std::sort(upwind_.begin(), upwind_.end());
+    const double base = upwind_.front();
+    double sum = 0;
+    double sum2 = 0;
+    double u = base + h_;
+    double count = 0;
+    for (const double value : upwind_) {
+      if (!(value < u)) break;
+      const double m = value - base;
+      sum += m;
+      sum2 += m * m;
+      count += 1;
+      u = base + (sum + std::sqrt(std::max(0.0, sum * sum - count * (sum2 - h_ * h_)))) / count;
+    }
+    return u;
+  }
+
+  SurfaceCells& cells_;
+  double h_;
+  GrowingField growing_;
+  TargetWatch<D, K> target_;
+  std::vector<std::int32_t> coordinates_;
+  std::vector<double> upwind_;
+};
+
+}  // namespace
+
+void march_axis(const MarchTask& task, DistanceField& field) {
+  with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),
+                  [&]<int D, int K>() { AxisMarch<D, K>(task, field).run(); });
+}
+
+}  // namespace taut::detail

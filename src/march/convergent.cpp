@@ -1,0 +1,142 @@
+#include <cstdint>
+#include <vector>
+
+#include "march/arrival.hpp"
+#include "march/dimensions.hpp"
+#include "march/field_reader.hpp"
+#include "march/growing_field.hpp"
+#include "march/methods.hpp"
+#include "march/start.hpp"
+#include "march/stencil.hpp"
+#include "march/target_watch.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// One march. A cell waits in the front with an estimate made from single neighbours; when it comes first, its distance
+/// is solved for once from all neighbours that have theirs, which are those behind it, and it passes estimates on.
+template <int D, int K>
+class ConvergentMarch {
+ public:
+  ConvergentMarch(const MarchTask& task, DistanceField& field)
+      : cells_(task.cells),
+        d_(field.sources.rows()),
+        k_(field.source_normals.rows() / d_),
+        direct_radius_(kDirectCells * cells_.grid().size()),
+        field_(task, field, true),
+        target_(task, field),
+        solver_(d_, k_),
+        frame_(d_, k_),
+        neighbours_(static_cast<std::size_t>(block_size(d_)) - 1),
+        flags_(static_cast<std::size_t>(cells_.num_cells()), 0) {
+    for (Index s = 0; s < field.sources.cols(); ++s) {
+      for (const Index i : cells_around_source(cells_, field.sources.col(s))) offer_direct(i, s);
+    }
+  }
+
+  void run() {
+    Front& front = field_.front();
+    while (!front.empty() && !target_.is_final(front.min_key())) {
+      const Index i = field_.pop();
+      flags_.resize(static_cast<std::size_t>(cells_.num_cells()), 0);
+      if (visit(i)) target_.settled(cells_.grid().cell(i));
+    }
+    field_.finish(target_.distance());
+  }
+
+ private:
+  enum Flag : std::uint8_t {
+    kDirect = 1,   // the estimate is the edge from the source itself
+    kDelayed = 2,  // has come first before, without neighbours on both sides of its ray
+  };
+
+  [[nodiscard]] SurfacePoint point(Index i) const { return {cells_.point(i).data(), cells_.normals(i).data()}; }
+  [[nodiscard]] std::uint8_t& flags(Index i) { return flags_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] bool is_direct(Index i) { return (flags(i) & kDirect) != 0; }
+  [[nodiscard]] bool is_delayed(Index i) { return (flags(i) & kDelayed) != 0; }
+
+  /// Settles cell i and tells its neighbours. False when it has to wait, or cannot be reached after all.
+  bool visit(Index i) {
+    const bool direct = is_direct(i);
+    solver_.begin(point(i));
+    waiting_.clear();
+    cells_.neighbours(i, neighbours_);
+    for (const Index j : neighbours_) {
+      if (j == CellGrid::kNone || !cells_.valid(j)) continue;
+      if (!field_.settled(j)) {
+        waiting_.push_back(j);
+      } else if (!direct) {
+        solver_.add(point(j), field_.distance(j), field_.gradient(j));
+      }
+    }
+    if (direct) {
+      const auto [length, direction] =
+          *direct_from_source<D, K>(field_.field(), field_.source(i), point(i), direct_radius_, frame_);
+      settle(i, length, direction);
+      for (const Index j : waiting_) offer_direct(j, field_.source(i));
+    } else {
+      if (solver_.empty()) return false;
+      const Arrival<D> arrival = solver_.solve();
+      if (!arrival.enclosed && !is_delayed(i)) {
+        flags(i) |= kDelayed;
+        field_.front().put_back(i, arrival.distance);
+        return false;
+      }
+      settle(i, arrival.distance, arrival.gradient);
+    }
+    for (const Index j : waiting_) offer(j, i);
+    return true;
+  }
+
+  void settle(Index i, double distance, const SmallVector<D>& gradient) {
+    Eigen::Map<SmallVector<D>>(field_.gradient(i), d_) = gradient;
+    field_.settle(i, distance);
+  }
+
+  /// Source s offers cell j its distance, when j is near enough.
+  void offer_direct(Index j, Index s) {
+    if (is_direct(j) && field_.source(j) == s) return;
+    const auto direct = direct_from_source<D, K>(field_.field(), s, point(j), direct_radius_, frame_);
+    if (!direct) return;
+    const bool same_source = field_.front().contains(j) && field_.source(j) == s;
+    if (same_source) {
+      field_.set(j, direct->first, s);
+    } else if (!field_.offer(j, direct->first, s)) {
+      return;
+    }
+    flags(j) |= kDirect;
+  }
+
+  /// Cell i, just settled, offers j what it makes of the distance there.
+  void offer(Index j, Index i) {
+    const Index s = field_.source(i);
+    if (is_direct(j) && field_.source(j) == s) return;
+    Edge<D> edge;
+    if (!make_edge<D, K>(point(i), point(j), d_, k_, edge)) return;
+    const double u = field_.distance(i);
+    const double along = edge.length * edge.component(Eigen::Map<const SmallVector<D>>(field_.gradient(i), d_));
+    const double estimate = is_delayed(j) ? u + edge.length : circular_estimate(u, along, edge.length);
+    if (field_.offer(j, estimate, s)) flags(j) &= static_cast<std::uint8_t>(~kDirect);
+  }
+
+  SurfaceCells& cells_;
+  Index d_;
+  Index k_;
+  double direct_radius_;
+  GrowingField field_;
+  TargetWatch<D, K> target_;
+  ArrivalSolver<D, K> solver_;
+  TangentFrame<D, K> frame_;
+  std::vector<Index> neighbours_;
+  std::vector<Index> waiting_;
+  std::vector<std::uint8_t> flags_;
+};
+
+}  // namespace
+
+void march_convergent(const MarchTask& task, DistanceField& field) {
+  with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),
+                  [&]<int D, int K>() { ConvergentMarch<D, K>(task, field).run(); });
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,57 @@
+#include "taut/march/march.hpp"
+
+#include <limits>
+#include <string>
+
+#include "march/methods.hpp"
+#include "march/point_normals.hpp"
+#include "march/start.hpp"
+#include "march/tangent_frame.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut {
+namespace {
+
+// Checks points (d x n) named `name`; returns bases of their normal spaces.
+Points checked_normals(const Surface& surface, const PointsIn& x, const std::string& name) {
+  if (x.rows() != surface.dim()) {
+    throw InvalidArgument(name + " has " + std::to_string(x.rows()) + " coordinates, the surface lies in dimension " +
+                          std::to_string(surface.dim()));
+  }
+  if (!x.allFinite()) throw InvalidArgument(name + " is not finite");
+  Points normals = detail::normals_at(surface, x);
+  for (Index j = 0; j < x.cols(); ++j) {
+    if (!normals.col(j).allFinite()) {
+      throw SingularPoint(name + " " + detail::describe_point(x.col(j)) + " is a singular point of the surface");
+    }
+  }
+  return normals;
+}
+
+}  // namespace
+
+DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources, const MarchOptions& options,
+                    const Context& context) {
+  if (surface.dim() != cells.grid().dim()) throw InvalidArgument("the cells belong to another surface");
+  if (surface.dim() > detail::kMaxMarchDim) {
+    throw InvalidArgument("dimension " + std::to_string(surface.dim()) + ": cells are marched up to dimension " +
+                          std::to_string(detail::kMaxMarchDim));
+  }
+  if (sources.cols() == 0) throw InvalidArgument("no source given");
+  DistanceField field;
+  field.method = options.method;
+  field.sources = sources;
+  field.source_normals = checked_normals(surface, sources, "source");
+  field.target_distance = std::numeric_limits<double>::quiet_NaN();
+  detail::MarchTask task{cells, options, context, {}};
+  if (options.target) task.target_normals = checked_normals(surface, *options.target, "target").col(0);
+  context.check_cancelled();
+  switch (options.method) {
+    case MarchMethod::convergent: detail::march_convergent(task, field); break;
+    case MarchMethod::axis: detail::march_axis(task, field); break;
+    case MarchMethod::dijkstra: detail::march_dijkstra(task, field); break;
+  }
+  return field;
+}
+
+}  // namespace taut
