@@ -81,12 +81,6 @@ Repose measure_repose(const FlowNodes& nodes, const PointsIn& points) {
   return repose;
 }
 
-double polyline_length(const PointsIn& points) {
-  double length = 0;
-  for (Index i = 0; i + 1 < points.cols(); ++i) length += (points.col(i + 1) - points.col(i)).norm();
-  return length;
-}
-
 Points resample(const PointsIn& points, Index num_intervals) {
   const Index m = points.cols() - 1;
   std::vector<double> arc(static_cast<std::size_t>(m + 1), 0.0);

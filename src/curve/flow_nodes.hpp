@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include "curve/polyline.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {
@@ -63,9 +64,6 @@ struct Repose {
 /// the mean of the two intervals, its part tangential to the surface and normal to the curve is k_g N. `points` are the
 /// nodes to measure, `nodes` gives the normals.
 [[nodiscard]] Repose measure_repose(const FlowNodes& nodes, const PointsIn& points);
-
-/// Sum of the intervals.
-[[nodiscard]] double polyline_length(const PointsIn& points);
 
 /// The polyline's points at equal distances along it, num_intervals + 1 of them, ends exact.
 [[nodiscard]] Points resample(const PointsIn& points, Index num_intervals);

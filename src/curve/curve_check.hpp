@@ -1,0 +1,148 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "curve/newton_kernel.hpp"
+
+namespace taut::detail {
+
+/// What a look between the nodes of a converged curve tells, at p + 2 Gauss points an element.
+///
+/// Two routes to the length: E = 1/2 int |x'|^2 of the polynomials, and the Lagrangian E + int mu F along the whole
+/// curve, mu = (x'' . g) / |g|^2, which forgives a point off the surface to second order. Their difference is the
+/// quadrature error of the constraint. What is left is quadratic in the curve's error: its normal part is seen
+/// directly, n . x', its tangential part through the residual P x'' (an element's lowest free mode answers it with (h /
+/// 2)^2 / (p (p + 1))).
+struct CurveCheck {
+  double length = 0;        ///< from the Lagrangian, model units
+  double length_error = 0;  ///< model units
+  double off_surface = 0;   ///< max |J^+ F|
+  double geodesic_curvature = 0;
+  double curvature = 0;               ///< sup |x''|: to judge the residual by
+  bool regular = true;                ///< J has full rank, F is finite at every check point
+  double weakest_gradient = 0;        ///< min over max of the smallest |grad F| along the curve
+  std::vector<double> element_error;  ///< length error made in each element
+  std::vector<double> element_off;    ///< max |J^+ F| in each element
+};
+
+template <int D, int K>
+class CurveChecker {
+ public:
+  using VectorD = Eigen::Matrix<double, D, 1>;
+  using VectorK = Eigen::Matrix<double, K, 1>;
+
+  CurveChecker(Index dim, Index codim) : d_(dim), k_(codim) {
+    frame_.resize(dim, codim);
+    scratch_.resize(codim);
+    for (VectorD* v : {&first_, &second_, &step_, &tangential_}) v->resize(dim);
+  }
+
+  [[nodiscard]] Index num_evaluated() const { return evaluated_; }
+  void reset_counters() { evaluated_ = 0; }
+
+  /// `check` is reused from call to call.
+  void inspect(Evaluator& evaluator, NewtonKernel<D, K>& kernel, CurveCheck& check) {
+    const ReferenceElement& element = kernel.element();
+    const int n = element.num_nodes();
+    const int checks = element.num_checks();
+    const Index m = kernel.num_elements();
+    const auto& x = kernel.nodes();
+    local_.resize(d_, n);
+    points_.resize(d_, m * checks);
+    firsts_.resize(d_, m * checks);
+    seconds_.resize(d_, m * checks);
+    value_.resize(k_, m * checks);
+    jacobian_.resize(d_ * k_, m * checks);
+    for (Index e = 0; e < m; ++e) {
+      const double scale = 2 / kernel.lengths()[static_cast<std::size_t>(e)];
+      local_ = x.middleCols(e * kernel.degree(), n).colwise() - x.col(e * kernel.degree());
+      points_.middleCols(e * checks, checks).noalias() = local_.lazyProduct(element.check_value);
+      points_.middleCols(e * checks, checks).colwise() += x.col(e * kernel.degree());
+      firsts_.middleCols(e * checks, checks).noalias() = local_.lazyProduct(scale * element.check_first);
+      seconds_.middleCols(e * checks, checks).noalias() = local_.lazyProduct((scale * scale) * element.check_second);
+    }
+    evaluated_ += m * checks;
+    evaluator.evaluate({.n = m * checks, .x = points_.data(), .value = value_.data(), .jacobian = jacobian_.data()});
+    gather(kernel, check);
+  }
+
+ private:
+  void gather(const NewtonKernel<D, K>& kernel, CurveCheck& check) {
+    const ReferenceElement& element = kernel.element();
+    const int checks = element.num_checks();
+    const int p = kernel.degree();
+    const Index m = kernel.num_elements();
+    check.element_error.assign(static_cast<std::size_t>(m), 0.0);
+    check.element_off.assign(static_cast<std::size_t>(m), 0.0);
+    check.regular = true;
+    check.off_surface = check.geodesic_curvature = check.curvature = 0;
+    double weakest = std::numeric_limits<double>::infinity();
+    double strongest = 0;
+    double energy = 0;
+    double correction = 0;  // int mu F
+    double remainder = 0;   // of the energy, quadratic in the error
+    double quadrature = 0;
+    for (Index e = 0; e < m; ++e) {
+      const double half = kernel.lengths()[static_cast<std::size_t>(e)] / 2;
+      const double response = half * half / (p * (p + 1));
+      double element_remainder = 0;
+      double element_correction = 0;
+      double& off = check.element_off[static_cast<std::size_t>(e)];
+      for (int g = 0; g < checks; ++g) {
+        const Index j = e * checks + g;
+        const double weight = half * element.check_weight(g);
+        Eigen::Map<const Eigen::Matrix<double, D, K>> gradients(jacobian_.col(j).data(), d_, k_);
+        first_ = firsts_.col(j);
+        second_ = seconds_.col(j);
+        energy += weight * first_.squaredNorm() / 2;
+        const double gradient = gradients.colwise().norm().minCoeff();
+        if (!value_.col(j).allFinite() || !frame_.compute(gradients)) {
+          check.regular = false;
+          continue;
+        }
+        weakest = std::min(weakest, gradient);
+        strongest = std::max(strongest, gradient);
+        frame_.pseudo_inverse(value_.col(j), scratch_, step_);  // J^+ F
+        off = std::max(off, step_.norm());
+        const double mu_f = weight * second_.dot(step_);
+        element_correction += mu_f;
+        const double normal_speed = (frame_.normals().transpose() * first_).squaredNorm();
+        tangential_ = second_ - frame_.normals() * (frame_.normals().transpose() * second_);
+        element_remainder += weight * (normal_speed + response * tangential_.squaredNorm()) / 2;
+        const double speed = first_.squaredNorm();
+        check.curvature = std::max(check.curvature, second_.norm() / speed);
+        tangential_ -= first_ * (tangential_.dot(first_) / speed);
+        check.geodesic_curvature = std::max(check.geodesic_curvature, tangential_.norm() / speed);
+      }
+      check.off_surface = std::max(check.off_surface, off);
+      correction += element_correction;
+      quadrature += std::abs(element_correction);
+      remainder += element_remainder;
+      check.element_error[static_cast<std::size_t>(e)] = element_remainder + std::abs(element_correction);
+    }
+    const double lagrangian = energy + correction;
+    check.length = std::sqrt(2 * kernel.period() * std::max(lagrangian, 0.0));
+    const double speed = check.length / kernel.period();
+    const double to_length = speed > 0 ? 1 / speed : 1;  // dL = dE / speed
+    for (double& error : check.element_error) error *= to_length;
+    (void)quadrature;
+    check.length_error = to_length * (remainder + std::abs(correction));
+    check.weakest_gradient = strongest > 0 ? weakest / strongest : 0;
+  }
+
+  Index d_;
+  Index k_;
+  TangentFrame<D, K> frame_;
+  VectorK scratch_;
+  VectorD first_, second_, step_, tangential_;
+  Eigen::Matrix<double, D, Eigen::Dynamic> local_, points_, firsts_, seconds_;
+  Eigen::Matrix<double, K, Eigen::Dynamic> value_;
+  Eigen::MatrixXd jacobian_;
+  Index evaluated_ = 0;
+};
+
+}  // namespace taut::detail

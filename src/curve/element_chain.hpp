@@ -1,0 +1,198 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace taut::detail {
+
+/// Solves the symmetric systems of a curve made of m elements in a row, q unknowns a node, both ends fixed. Unknowns
+/// inside an element are eliminated first (dense Cholesky, in place), which leaves a block tridiagonal system for the
+/// m - 1 inner element ends, factored as L D L^T with q x q pivots D_j. By Sylvester's law the negative eigenvalues of
+/// the pivots count the negative directions of the whole matrix; while D_1 .. D_{j-1} are positive definite, the matrix
+/// is positive on everything that vanishes from element end j on.
+///
+/// Use: resize; fill `row`s and `end_block`/`end_right` of every element; condense every element; factor; solve.
+template <int Q>
+class ElementChain {
+ public:
+  using Block = Eigen::Matrix<double, Q, Q>;
+  using Segment = Eigen::Matrix<double, Q, 1>;
+  static constexpr int Q2 = Q == Eigen::Dynamic ? Eigen::Dynamic : 2 * Q;
+  using EndBlock = Eigen::Matrix<double, Q2, Q2>;
+  using EndSegment = Eigen::Matrix<double, Q2, 1>;
+
+  void resize(int degree, Eigen::Index elements, Eigen::Index q) {
+    q_ = q;
+    inner_ = (degree - 1) * q;
+    width_ = inner_ + 2 * q + 1;
+    m_ = elements;
+    rows_.resize(static_cast<std::size_t>(inner_ * width_ * m_));
+    end_block_.resize(static_cast<std::size_t>(4 * q * q * m_));
+    end_right_.resize(static_cast<std::size_t>(2 * q * m_));
+    pivot_.resize(static_cast<std::size_t>(q * q * m_));
+    link_.resize(static_cast<std::size_t>(q * q * m_));
+    right_.resize(static_cast<std::size_t>(q * m_));
+  }
+
+  /// Before elements are filled.
+  void start() {
+    condensed_ = 0;
+    first_failing_ = -1;
+    negative_ = 0;
+  }
+  /// Were the inner unknowns of every element positive definite.
+  [[nodiscard]] bool condensed() const { return condensed_ == m_; }
+
+  [[nodiscard]] Eigen::Index width() const { return width_; }
+  [[nodiscard]] Eigen::Index inner() const { return inner_; }
+  /// Row i of the inner unknowns of element e: columns are inner unknowns (only from i on), left end, right end, right
+  /// side.
+  [[nodiscard]] double* row(Eigen::Index e, Eigen::Index i) { return rows_.data() + (e * inner_ + i) * width_; }
+  [[nodiscard]] Eigen::Map<EndBlock> end_block(Eigen::Index e) {
+    return Eigen::Map<EndBlock>(end_block_.data() + e * 4 * q_ * q_, 2 * q_, 2 * q_);
+  }
+  [[nodiscard]] Eigen::Map<EndSegment> end_right(Eigen::Index e) {
+    return Eigen::Map<EndSegment>(end_right_.data() + e * 2 * q_, 2 * q_);
+  }
+
+  /// Eliminates the inner unknowns of element e: U^T U in its rows, the Schur complement in its end block. False when
+  /// they are not positive definite.
+  bool condense(Eigen::Index e) {
+    const Eigen::Index w = width_;
+    for (Eigen::Index k = 0; k < inner_; ++k) {
+      double* __restrict pivot_row = row(e, k);
+      const double pivot = pivot_row[k];
+      if (!(pivot > 0)) return false;
+      const double scale = 1 / std::sqrt(pivot);
+      for (Eigen::Index j = k; j < w; ++j) pivot_row[j] *= scale;
+      for (Eigen::Index i = k + 1; i < inner_; ++i) {
+        double* __restrict target = row(e, i);
+        const double factor = pivot_row[i];
+        for (Eigen::Index j = i; j < w; ++j) target[j] -= factor * pivot_row[j];
+      }
+    }
+    auto block = end_block(e);
+    auto right = end_right(e);
+    for (Eigen::Index k = 0; k < inner_; ++k) {
+      Eigen::Map<const EndSegment> ends(row(e, k) + inner_, 2 * q_);
+      block.noalias() -= ends * ends.transpose();
+      right -= ends * row(e, k)[w - 1];
+    }
+    ++condensed_;
+    return true;
+  }
+
+  /// Factors the system of the element ends. With `definite` it stops at the first pivot block that is not positive
+  /// definite and returns false. Without, it goes on with the indefinite block; false only for a singular or non-finite
+  /// one.
+  bool factor(bool definite) {
+    negative_ = 0;
+    first_failing_ = -1;
+    for (Eigen::Index j = 1; j < m_; ++j) {
+      Eigen::Map<Block> pivot = block_of(pivot_, j);
+      Eigen::Map<Segment> right = segment(j);
+      pivot = end_block(j - 1).bottomRightCorner(q_, q_) + end_block(j).topLeftCorner(q_, q_);
+      right = end_right(j - 1).tail(q_) + end_right(j).head(q_);
+      if (j > 1) {
+        const auto above = end_block(j - 1).topRightCorner(q_, q_);
+        pivot.noalias() -= above.transpose() * block_of(link_, j - 1);
+        right.noalias() -= above.transpose() * segment(j - 1);
+      }
+      Eigen::Map<Block> link = block_of(link_, j);
+      link = end_block(j).topRightCorner(q_, q_);
+      cholesky_.compute(pivot);
+      if (cholesky_.info() == Eigen::Success && pivot.diagonal().allFinite()) {
+        cholesky_.solveInPlace(link);
+        cholesky_.solveInPlace(right);
+        continue;
+      }
+      if (first_failing_ < 0) first_failing_ = j;
+      if (definite || !pivot.allFinite()) return false;
+      eigen_.compute(pivot);
+      const Segment values = eigen_.eigenvalues();
+      const double largest = values.cwiseAbs().maxCoeff();
+      if (!(values.cwiseAbs().minCoeff() > 1e-14 * largest)) return false;
+      negative_ += static_cast<int>((values.array() < 0).count());
+      const Block inverse =
+          eigen_.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen_.eigenvectors().transpose();
+      link = (inverse * link).eval();
+      right = (inverse * right).eval();
+    }
+    return true;
+  }
+
+  /// Negative directions found by factor(false).
+  [[nodiscard]] int num_negative() const { return negative_; }
+  /// The element end (1 .. m - 1) whose pivot was the first not to be positive definite, or -1.
+  [[nodiscard]] Eigen::Index first_failing() const { return first_failing_; }
+
+  /// The solution at all nodes, q x (m degree + 1), zero at both ends.
+  void solve(double* y) {
+    const Eigen::Index stride = inner_ + q_;
+    Eigen::Map<Eigen::VectorXd>(y, q_).setZero();
+    Eigen::Map<Eigen::VectorXd>(y + m_ * stride, q_).setZero();
+    for (Eigen::Index j = m_ - 1; j >= 1; --j) {
+      Eigen::Map<Segment> value(y + j * stride, q_);
+      value = segment(j);
+      if (j + 1 < m_) value.noalias() -= block_of(link_, j) * Eigen::Map<const Segment>(y + (j + 1) * stride, q_);
+    }
+    for (Eigen::Index e = 0; e < m_; ++e) back_substitute(e, y, 1);
+  }
+
+  /// A direction v with v^T A v <= 0, after factor(true) failed at an element end: q x (m degree + 1). Returns v^T A v.
+  double negative_direction(double* v) {
+    const Eigen::Index stride = inner_ + q_;
+    Eigen::Map<Eigen::VectorXd>(v, m_ * stride + q_).setZero();
+    const Eigen::Index j = first_failing_;
+    eigen_.compute(block_of(pivot_, j));
+    Eigen::Map<Segment>(v + j * stride, q_) = eigen_.eigenvectors().col(0);
+    for (Eigen::Index i = j - 1; i >= 1; --i) {
+      Eigen::Map<Segment>(v + i * stride, q_).noalias() =
+          -(block_of(link_, i) * Eigen::Map<const Segment>(v + (i + 1) * stride, q_));
+    }
+    for (Eigen::Index e = 0; e <= j; ++e) back_substitute(e, v, 0);
+    return eigen_.eigenvalues()(0);
+  }
+
+  /// Inner unknowns of element e from those at its ends; `load` is 0 for a homogeneous system, else 1.
+  void back_substitute(Eigen::Index e, double* y, double load) {
+    double* left = y + e * (inner_ + q_);
+    double* inside = left + q_;
+    const double* end = inside + inner_;
+    for (Eigen::Index k = inner_; k-- > 0;) {
+      const double* r = row(e, k);
+      double sum = load * r[width_ - 1];
+      for (Eigen::Index j = 0; j < q_; ++j) sum -= r[inner_ + j] * left[j] + r[inner_ + q_ + j] * end[j];
+      for (Eigen::Index j = k + 1; j < inner_; ++j) sum -= r[j] * inside[j];
+      inside[k] = sum / r[k];
+    }
+  }
+
+ private:
+  [[nodiscard]] Eigen::Map<Block> block_of(std::vector<double>& store, Eigen::Index j) const {
+    return Eigen::Map<Block>(store.data() + j * q_ * q_, q_, q_);
+  }
+  [[nodiscard]] Eigen::Map<Segment> segment(Eigen::Index j) { return Eigen::Map<Segment>(right_.data() + j * q_, q_); }
+
+  Eigen::Index q_ = 0;
+  Eigen::Index inner_ = 0;
+  Eigen::Index width_ = 0;
+  Eigen::Index m_ = 0;
+  std::vector<double> rows_;
+  std::vector<double> end_block_;
+  std::vector<double> end_right_;
+  std::vector<double> pivot_;
+  std::vector<double> link_;
+  std::vector<double> right_;
+  Eigen::LLT<Block> cholesky_;
+  Eigen::SelfAdjointEigenSolver<Block> eigen_;
+  int negative_ = 0;
+  Eigen::Index condensed_ = 0;
+  Eigen::Index first_failing_ = -1;
+};
+
+}  // namespace taut::detail

@@ -1,0 +1,64 @@
+#include "taut/curve/newton.hpp"
+
+#include <string>
+
+#include "curve/newton_backend.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut {
+namespace {
+
+void check(const NewtonOptions& options) {
+  if (!(options.tolerance >= 1e-13 && options.tolerance <= 1e-3)) {
+    throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in 1e-13 .. 1e-3");
+  }
+  if (options.max_iterations < 1) {
+    throw InvalidArgument("max_iterations is " + std::to_string(options.max_iterations) + ", must be at least 1");
+  }
+  if (options.max_elements < 1) {
+    throw InvalidArgument("max_elements is " + std::to_string(options.max_elements) + ", must be at least 1");
+  }
+}
+
+// Sizes that are worth a kernel of their own; the rest shares one with sizes at run time.
+std::unique_ptr<NewtonSolver::Backend> make_backend(const Surface& surface, const NewtonOptions& options) {
+  using detail::make_newton_driver;
+  check(options);
+  if (surface.codim() == 1) {
+    if (surface.dim() == 2) return make_newton_driver<2, 1>(surface, options);
+    if (surface.dim() == 3) return make_newton_driver<3, 1>(surface, options);
+    if (surface.dim() == 4) return make_newton_driver<4, 1>(surface, options);
+  }
+  return make_newton_driver<Eigen::Dynamic, Eigen::Dynamic>(surface, options);
+}
+
+}  // namespace
+
+NewtonSolver::NewtonSolver(const Surface& surface, const NewtonOptions& options)
+    : backend_(make_backend(surface, options)) {}
+NewtonSolver::~NewtonSolver() = default;
+NewtonSolver::NewtonSolver(NewtonSolver&&) noexcept = default;
+NewtonSolver& NewtonSolver::operator=(NewtonSolver&&) noexcept = default;
+
+NewtonResult NewtonSolver::solve(const PointsIn& start, const Context& context) {
+  if (start.rows() != backend_->dim()) {
+    throw InvalidArgument("the start path has dimension " + std::to_string(start.rows()) + ", the surface has " +
+                          std::to_string(backend_->dim()));
+  }
+  if (start.cols() < 2) {
+    throw InvalidArgument("the start path has " + std::to_string(start.cols()) + " points, needs at least 2");
+  }
+  for (Index j = 0; j < start.cols(); ++j) {
+    if (!start.col(j).allFinite()) {
+      throw InvalidArgument("point " + std::to_string(j) + " of the start path is not finite");
+    }
+  }
+  return backend_->solve(start, context);
+}
+
+NewtonResult correct_newton(const Surface& surface, const PointsIn& start, const NewtonOptions& options,
+                            const Context& context) {
+  return NewtonSolver(surface, options).solve(start, context);
+}
+
+}  // namespace taut

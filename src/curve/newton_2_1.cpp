@@ -1,0 +1,7 @@
+#include "curve/newton_driver.hpp"
+
+namespace taut::detail {
+
+template std::unique_ptr<NewtonSolver::Backend> make_newton_driver<2, 1>(const Surface&, const NewtonOptions&);
+
+}  // namespace taut::detail

@@ -1,0 +1,435 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "curve/curve_check.hpp"
+#include "curve/newton_backend.hpp"
+#include "curve/newton_kernel.hpp"
+#include "curve/polyline.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut::detail {
+
+/// The adaptive part of Newton's correction: a coarse polyline (p = 1) takes the start to the valley of a geodesic;
+/// then elements of high degree, sized by how fast the normal turns, are solved, inspected between their nodes, and cut
+/// where the error is, until the length is good enough.
+template <int D, int K>
+class NewtonDriver : public NewtonSolver::Backend {
+ public:
+  using Nodes = typename NewtonKernel<D, K>::Nodes;
+  using VectorD = typename NewtonKernel<D, K>::VectorD;
+
+  NewtonDriver(const Surface& surface, const NewtonOptions& options)
+      : surface_(surface),
+        options_(options),
+        evaluator_(surface.make_evaluator()),
+        kernel_(surface.dim(), surface.codim()),
+        checker_(surface.dim(), surface.codim()) {}
+
+  [[nodiscard]] Index dim() const override { return surface_.dim(); }
+
+  NewtonResult solve(const PointsIn& start, const Context& context) override {
+    kernel_.reset_counters();
+    checker_.reset_counters();
+    context_ = &context;
+    scale_ = start.cwiseAbs().maxCoeff();
+    const Points path = without_repeats(start);
+    const double length = polyline_length(path);
+    NewtonResult result;
+    if (path.cols() < 2 || length <= 1e-15 * scale_) return of_a_point(start);
+    Relaxation outcome = solve_coarse(path, length);
+    if (outcome == Relaxation::converged || outcome == Relaxation::saddle || outcome == Relaxation::stalled) {
+      outcome = solve_fine(result);
+    } else if (outcome == Relaxation::collapsed && path.col(0) == path.col(path.cols() - 1)) {
+      return of_a_point(start);
+    } else {
+      checker_.inspect(*evaluator_, kernel_, check_);
+    }
+    finish(start, outcome, result);
+    return result;
+  }
+
+ private:
+  static constexpr double kWideTurn = 1.0;    // radians between nodes beyond which a coarse curve is not trusted
+  static constexpr double kCoarseTurn = 0.6;  // ... beyond which it is refined once it is relaxed
+  static constexpr Index kCoarseSegments = 24;
+  static constexpr int kMaxCycles = 14;
+
+  NewtonResult of_a_point(const PointsIn& start) const {
+    NewtonResult result;
+    result.points.resize(start.rows(), 2);
+    result.points << start.col(0), start.col(start.cols() - 1);
+    result.status = Status::ok;
+    result.length = (result.points.col(1) - result.points.col(0)).norm();
+    result.locally_shortest = true;
+    result.curve = SpectralCurve(1, {1.0}, result.points);
+    return result;
+  }
+
+  // The coarse curve.
+
+  Relaxation solve_coarse(const Points& path, double length) {
+    std::vector<double> arcs(kCoarseSegments + 1);
+    for (Index i = 0; i <= kCoarseSegments; ++i) {
+      arcs[static_cast<std::size_t>(i)] = length * static_cast<double>(i) / kCoarseSegments;
+    }
+    lengths_.assign(kCoarseSegments, length / kCoarseSegments);
+    kernel_.set_mesh(1, lengths_);
+    kernel_.nodes() = at_arc_lengths(path, arcs);
+    RelaxationGoal goal{.energy = 1e-5, .off_surface = 1e-3 * length, .max_iterations = 0, .minimum = true};
+    // Nodes first: enough of them that the normal turns moderately from one to the next.
+    for (int cycle = 0; cycle < 12; ++cycle) {
+      const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
+      if (outcome != Relaxation::stalled) return outcome;
+      if (!refine_coarse(kWideTurn, &path, arcs)) break;
+    }
+    goal.max_iterations = std::min(60, options_.max_iterations);
+    goal.minimum = options_.leave_saddles;
+    for (int cycle = 0; cycle < 12; ++cycle) {
+      const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
+      if (outcome != Relaxation::converged) return outcome;
+      if (!refine_coarse(kCoarseTurn, nullptr, arcs)) break;
+      goal.max_iterations = std::min(60, std::max(0, options_.max_iterations - kernel_.num_iterations()));
+    }
+    return Relaxation::converged;
+  }
+
+  // How much the tangent space turns over each segment of a curve of degree 1 (an angle, radians, for small ones).
+  void measure_turning() {
+    const Index m = kernel_.num_elements();
+    turning_.assign(static_cast<std::size_t>(m), 0.0);
+    for (Index e = 1; e + 1 < m; ++e) {
+      const auto a = kernel_.tangents(e);
+      const auto b = kernel_.tangents(e + 1);
+      const double lost = static_cast<double>(a.cols()) - (b.transpose() * a).squaredNorm();
+      turning_[static_cast<std::size_t>(e)] = std::sqrt(std::max(0.0, lost));
+      if (flipped(e)) turning_[static_cast<std::size_t>(e)] = 2;
+    }
+    if (m >= 3) {
+      turning_.front() = turning_[1];
+      turning_.back() = turning_[static_cast<std::size_t>(m - 2)];
+    }
+  }
+  [[nodiscard]] bool flipped(Index e) const {
+    return kernel_.normal(e).dot(kernel_.normal(e + 1)) < 0 && kernel_.codim() == 1;
+  }
+
+  // Halves the segments over which the normal turns by more than `limit`; new nodes from `path` (at arc lengths `arcs`)
+  // or from the curve itself. False when there is none.
+  bool refine_coarse(double limit, const Points* path, std::vector<double>& arcs) {
+    measure_turning();
+    const Index m = kernel_.num_elements();
+    const double shortest = 1e-6 * kernel_.period();
+    std::vector<double> lengths;
+    std::vector<double> new_arcs{0.0};
+    const bool by_arc = path != nullptr;
+    Nodes nodes(kernel_.nodes().rows(), 2 * m + 1);
+    Index count = 0;
+    nodes.col(count++) = kernel_.nodes().col(0);
+    for (Index e = 0; e < m; ++e) {
+      const double h = lengths_[static_cast<std::size_t>(e)];
+      const bool cut = turning_[static_cast<std::size_t>(e)] > limit && h > shortest &&
+                       static_cast<Index>(lengths.size()) < 4 * options_.max_elements;
+      if (cut) {
+        nodes.col(count++) = (kernel_.nodes().col(e) + kernel_.nodes().col(e + 1)) / 2;
+        lengths.insert(lengths.end(), 2, h / 2);
+        new_arcs.push_back(new_arcs.back() + h / 2);
+      } else {
+        lengths.push_back(h);
+      }
+      nodes.col(count++) = kernel_.nodes().col(e + 1);
+      new_arcs.push_back(new_arcs.back() + lengths.back());
+    }
+    if (static_cast<Index>(lengths.size()) == m) return false;
+    lengths_ = std::move(lengths);
+    kernel_.set_mesh(1, lengths_);
+    if (by_arc) {
+      arcs = std::move(new_arcs);
+      kernel_.nodes() = at_arc_lengths(*path, arcs);
+    } else {
+      kernel_.nodes() = nodes.leftCols(count);
+    }
+    return true;
+  }
+
+  // The fine curve.
+
+  // The turn of the normal an element of degree p may see at this tolerance; measured (docs/newton.md).
+  [[nodiscard]] double turn_allowed(int p) const { return 0.7 * std::pow(options_.tolerance / 1e-12, 1.0 / (2 * p)); }
+
+  [[nodiscard]] int first_degree() const {
+    const Index q = surface_.dim() - surface_.codim();
+    if (q > 12 || options_.tolerance > 1e-6) return 4;
+    return 8;
+  }
+
+  void start_fine(int p) {
+    measure_turning();
+    double turn = 0;
+    std::vector<double> density(turning_.size());
+    for (std::size_t e = 0; e < turning_.size(); ++e) {
+      turn += turning_[e];
+      density[e] = turning_[e] / lengths_[e];
+    }
+    const auto wanted = static_cast<Index>(std::ceil(turn / turn_allowed(p)));
+    const Index m = std::clamp<Index>(wanted, 1, options_.max_elements);
+    std::vector<double> lengths = equidistribute(lengths_, density, m);
+    // Arc length as parameter: scale to the length found.
+    const Nodes coarse = kernel_.nodes();
+    std::vector<double> breaks(lengths_.size() + 1, 0.0);
+    for (std::size_t e = 0; e < lengths_.size(); ++e) breaks[e + 1] = breaks[e] + lengths_[e];
+    const double stretch = kernel_.length() / kernel_.period();
+    const ReferenceElement& element = ReferenceElement::of_degree(p);
+    Nodes nodes(coarse.rows(), m * p + 1);
+    nodes.col(0) = coarse.col(0);
+    double left = 0;
+    for (Index e = 0; e < m; ++e) {
+      const double h = lengths[static_cast<std::size_t>(e)];
+      for (int i = 1; i <= p; ++i) {
+        nodes.col(e * p + i) = cubic(coarse, breaks, left + h * (element.node(i) + 1) / 2);
+      }
+      left += h;
+    }
+    nodes.col(m * p) = coarse.col(coarse.cols() - 1);
+    lengths_ = std::move(lengths);
+    for (double& h : lengths_) h *= stretch;
+    kernel_.set_mesh(p, lengths_);
+    kernel_.nodes() = nodes;
+  }
+
+  // The cubic through the four nodes of a polyline around parameter t.
+  static VectorD cubic(const Nodes& nodes, const std::vector<double>& breaks, double t) {
+    const auto count = static_cast<Index>(breaks.size());
+    const auto above = std::upper_bound(breaks.begin() + 1, breaks.end() - 1, t);
+    const Index segment = above - breaks.begin() - 1;
+    const Index first = std::clamp<Index>(segment - 1, 0, std::max<Index>(0, count - 4));
+    const Index last = std::min(first + 4, count);
+    VectorD result = VectorD::Zero(nodes.rows());
+    for (Index i = first; i < last; ++i) {
+      double basis = 1;
+      for (Index j = first; j < last; ++j) {
+        if (j == i) continue;
+        const auto a = static_cast<std::size_t>(i);
+        const auto b = static_cast<std::size_t>(j);
+        basis *= (t - breaks[b]) / (breaks[a] - breaks[b]);
+      }
+      result += basis * nodes.col(i);
+    }
+    return result;
+  }
+
+  [[nodiscard]] double surface_tolerance() const { return 3e-3 * std::sqrt(options_.tolerance); }  // relative to length
+
+  Relaxation solve_fine(NewtonResult& /*result*/) {
+    start_fine(first_degree());
+    Relaxation outcome = Relaxation::converged;
+    double before = std::numeric_limits<double>::infinity();
+    int slow = 0;
+    nonsmooth_ = false;
+    for (int cycle = 0; cycle < kMaxCycles; ++cycle) {
+      RelaxationGoal goal{.energy = 0.02 * options_.tolerance,
+                          .off_surface = 1e-2 * surface_tolerance() * kernel_.period(),
+                          .max_iterations = options_.max_iterations - kernel_.num_iterations(),
+                          .minimum = options_.leave_saddles};
+      outcome = kernel_.relax(*evaluator_, goal, *context_);
+      if (outcome == Relaxation::singular || outcome == Relaxation::off_surface || outcome == Relaxation::collapsed)
+        break;
+      checker_.inspect(*evaluator_, kernel_, check_);
+      if (!check_.regular) return Relaxation::singular;
+      const double error = check_.length_error;
+      if (outcome == Relaxation::converged && accurate(error) && kernel_.resolved()) break;
+      if (outcome == Relaxation::stalled && kernel_.num_iterations() >= options_.max_iterations) break;
+      if (error > 0.1 * before) {
+        nonsmooth_ = true;
+        if (error > 0.9 * before && ++slow >= 4) break;
+      }
+      before = error;
+      if (!refine_fine()) break;
+    }
+    return outcome;
+  }
+
+  [[nodiscard]] bool accurate(double error) const {
+    return error <= 0.5 * options_.tolerance * check_.length &&
+           check_.off_surface <= surface_tolerance() * check_.length + 1e-15 * scale_;
+  }
+
+  // Cuts the elements that err most, into as many pieces as order 2 p of the length (p + 1 of the distance to the
+  // surface) predicts. False when the mesh may not grow.
+  bool refine_fine() {
+    const int p = kernel_.degree();
+    const Index m = kernel_.num_elements();
+    const double share = 0.25 * options_.tolerance * check_.length / static_cast<double>(m);
+    const double off_share = 0.5 * surface_tolerance() * check_.length;
+    pieces_.assign(static_cast<std::size_t>(m), 1);
+    Index total = 0;
+    bool any = false;
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      const double by_error = std::pow(check_.element_error[e] / share, 1.0 / (2 * p));
+      const double by_off = std::pow(check_.element_off[e] / off_share, 1.0 / (p + 1));
+      const double wanted = std::max(by_error, by_off);
+      if (wanted > 1) pieces_[e] = static_cast<int>(std::clamp(std::ceil(wanted), 2.0, 4.0));
+      if (lengths_[e] < 1e-7 * kernel_.period()) pieces_[e] = 1;
+      any = any || pieces_[e] > 1;
+      total += pieces_[e];
+    }
+    if (!any && !kernel_.resolved()) {
+      std::fill(pieces_.begin(), pieces_.end(), 2);
+      total = 2 * m;
+    } else if (!any) {
+      return false;
+    }
+    if (total > options_.max_elements) return false;
+    cut();
+    return true;
+  }
+
+  // Applies pieces_, carrying the curve over.
+  void cut() {
+    const int p = kernel_.degree();
+    const ReferenceElement& element = kernel_.element();
+    const Nodes old = kernel_.nodes();
+    std::vector<double> lengths;
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      lengths.insert(lengths.end(), static_cast<std::size_t>(pieces_[e]), lengths_[e] / pieces_[e]);
+    }
+    Nodes nodes(old.rows(), static_cast<Index>(lengths.size()) * p + 1);
+    nodes.col(0) = old.col(0);
+    Vector basis(p + 1);
+    Index next = 1;
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      const auto block = old.middleCols(static_cast<Index>(e) * p, p + 1);
+      for (int piece = 0; piece < pieces_[e]; ++piece) {
+        for (int i = 1; i <= p; ++i) {
+          const double xi = -1 + (2 * piece + 1 + element.node(i)) / pieces_[e];
+          element.basis(std::min(xi, 1.0), basis);
+          nodes.col(next++).noalias() = block * basis;
+        }
+      }
+    }
+    nodes.col(nodes.cols() - 1) = old.col(old.cols() - 1);
+    lengths_ = std::move(lengths);
+    kernel_.set_mesh(p, lengths_);
+    kernel_.nodes() = nodes;
+  }
+
+  // The result.
+
+  void finish(const PointsIn& start, Relaxation outcome, NewtonResult& result) {
+    result.curve = SpectralCurve(kernel_.degree(), lengths_, kernel_.nodes());
+    result.length = check_.length;
+    const double rounding = 4e-16 * check_.length + 2e-16 * scale_ * std::min(1.0, check_.curvature * check_.length);
+    result.length_error = check_.length_error + rounding;
+    result.residual = {.surface = check_.off_surface, .geodesic_curvature = check_.geodesic_curvature};
+    result.num_iterations = kernel_.num_iterations();
+    result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
+    result.index = kernel_.chain().num_negative();
+    result.locally_shortest =
+        outcome == Relaxation::converged && kernel_.resolved() && kernel_.chain().first_failing() < 0;
+    const bool in_domain = sample(start, result);
+    decide(outcome, in_domain, result);
+  }
+
+  void decide(Relaxation outcome, bool in_domain, NewtonResult& result) const {
+    const bool finite = std::isfinite(result.length) && std::isfinite(result.length_error);
+    result.status = Status::not_converged;
+    if (outcome == Relaxation::singular || !check_.regular || !finite) {
+      result.status = Status::rank_deficient;
+      result.reason = "the curve runs into a point where the Jacobian of F loses rank";
+    } else if (outcome == Relaxation::off_surface) {
+      result.reason = "the start path does not project onto the surface";
+    } else if (outcome == Relaxation::saddle) {
+      result.reason = "a geodesic that is not locally shortest, and no way down was found";
+    } else if (outcome != Relaxation::converged) {
+      result.reason = "the iteration stalled before it met the tolerance";
+    } else if (check_.off_surface > 4 * surface_tolerance() * check_.length + 1e-14 * scale_) {
+      result.reason = "the curve leaves the surface between its nodes";
+    } else if (result.length_error > options_.tolerance * result.length &&
+               result.length_error > 1e-13 * result.length) {
+      result.reason = nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
+                                 : "the tolerance was not met with the elements allowed";
+    } else if (!in_domain) {
+      result.status = Status::left_domain;
+      result.reason = "the curve leaves the domain of the surface";
+    } else {
+      result.status = Status::ok;
+    }
+    if (result.status == Status::not_converged && check_.weakest_gradient < 1e-3) {
+      result.status = Status::rank_deficient;
+      result.reason = "the curve passes close to a point where the Jacobian of F loses rank";
+    }
+    if (result.status == Status::rank_deficient) result.locally_shortest = false;
+    if (!finite) result.length_error = std::numeric_limits<double>::infinity();
+  }
+
+  // Dense points for display, projected onto the surface. False when one is outside the domain.
+  bool sample(const PointsIn& start, NewtonResult& result) {
+    const int p = kernel_.degree();
+    const Index m = kernel_.num_elements();
+    const Index each = std::max<Index>(2 * p, (64 + m - 1) / m);
+    Points& points = result.points;
+    points.resize(start.rows(), m * each + 1);
+    const Points& nodes = result.curve.nodes();
+    Eigen::MatrixXd basis(p + 1, each);
+    for (Index i = 0; i < each; ++i) {
+      kernel_.element().basis(-1 + 2 * static_cast<double>(i) / static_cast<double>(each), basis.col(i));
+    }
+    for (Index e = 0; e < m; ++e) points.middleCols(e * each, each).noalias() = nodes.middleCols(e * p, p + 1) * basis;
+    points.col(0) = start.col(0);
+    points.rightCols<1>() = start.rightCols<1>();
+    project_points(points);
+    return surface_.domain() == nullptr || surface_.inside_domain(points, 1e-7 * check_.length).all();
+  }
+
+  void project_points(Points& points) {
+    const Index n = points.cols();
+    const Index d = surface_.dim();
+    const Index k = surface_.codim();
+    Eigen::MatrixXd value(k, n);
+    Eigen::MatrixXd jacobian(d * k, n);
+    TangentFrame<D, K> frame;
+    frame.resize(d, k);
+    Eigen::Matrix<double, K, 1> scratch(k);
+    Eigen::Matrix<double, D, 1> step(d);
+    double before = std::numeric_limits<double>::infinity();
+    for (int round = 0; round < 6; ++round) {
+      evaluator_->evaluate({.n = n, .x = points.data(), .value = value.data(), .jacobian = jacobian.data()});
+      double largest = 0;
+      for (Index j = 1; j + 1 < n; ++j) {
+        Eigen::Map<const Eigen::Matrix<double, D, K>> gradients(jacobian.col(j).data(), d, k);
+        if (!value.col(j).allFinite() || !frame.compute(gradients)) continue;
+        frame.pseudo_inverse(value.col(j), scratch, step);
+        const double size = step.norm();
+        if (size > 0.1 * check_.length) continue;
+        largest = std::max(largest, size);
+        points.col(j) -= step;
+      }
+      // quadratic: from 1e-8 to rounding in one step
+      if (largest < 1e-8 * scale_ * std::min(1.0, 1 / (1 + check_.curvature * scale_)) || largest > 0.5 * before) break;
+      before = largest;
+    }
+  }
+
+  Surface surface_;
+  NewtonOptions options_;
+  std::unique_ptr<Evaluator> evaluator_;
+  NewtonKernel<D, K> kernel_;
+  CurveChecker<D, K> checker_;
+  CurveCheck check_;
+  const Context* context_ = nullptr;
+  double scale_ = 1;
+  bool nonsmooth_ = false;
+  std::vector<double> lengths_;
+  std::vector<double> turning_;
+  std::vector<int> pieces_;
+};
+
+template <int D, int K>
+std::unique_ptr<NewtonSolver::Backend> make_newton_driver(const Surface& surface, const NewtonOptions& options) {
+  return std::make_unique<NewtonDriver<D, K>>(surface, options);
+}
+
+}  // namespace taut::detail
