@@ -1,0 +1,202 @@
+#include "taut/cells/find_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cells/refine.hpp"
+#include "surface/describe.hpp"
+#include "taut/cells/cell_grid.hpp"
+#include "taut/cells/crossing.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/projection.hpp"
+
+namespace taut {
+namespace {
+
+constexpr double kReach = 0x1p24;   // model units
+constexpr int kLevelsPerRound = 6;  // a round resolves a box to 1/64
+constexpr Index kMaxCellsPerRound = 4096;
+constexpr double kSampleMargin = 0.05;   // of the samples' diagonal
+constexpr double kDefaultHalfWidth = 5;  // model units: 1.6 periods of a sine
+constexpr double kTrialMargin = 0.1;     // of the diagonal
+constexpr Index kTrials = 192;           // starts a scale
+
+Box cube(const Vector& centre, double half_width) { return {centre.array() - half_width, centre.array() + half_width}; }
+
+/// The bounding box of the cells that the surface may cross inside `box`, looked for in one cube around it to 1/64 of
+/// its size or until there are too many; empty (d = 0) when there are none.
+Box shrink_once(const Surface& surface, const Box& box, const Context& context) {
+  const Index d = surface.dim();
+  // A cube off the box's middle, so that a tiny surface there does not sit in the corner of 2^d cells on every level.
+  const double half_width = 0.55 * box.extent().maxCoeff() + std::numeric_limits<double>::min();
+  Vector origin = 0.5 * (box.lower + box.upper);
+  for (Index a = 0; a < d; ++a) origin(a) -= half_width * (1 + 0.08 * std::sin(static_cast<double>(a + 1)));
+  CrossingTest test(surface.with_box(box), origin, std::ldexp(2 * half_width, -kLevelsPerRound));
+  detail::Refiner refiner(test, d);
+  std::vector<std::int32_t> cells(static_cast<std::size_t>(d), 0);
+  std::vector<std::int32_t> tested;
+  int level = kLevelsPerRound;
+  refiner.refine(cells, level, level, tested);
+  while (level > 0 && static_cast<Index>(tested.size()) / d <= kMaxCellsPerRound) {
+    context.check_cancelled();
+    cells.clear();
+    detail::append_halves(d, tested.data(), static_cast<Index>(tested.size()) / d, cells);
+    tested.clear();
+    --level;
+    refiner.refine(cells, level, level, tested);
+  }
+  if (tested.empty()) return {};
+  const CellGrid grid(origin, std::ldexp(2 * half_width, level - kLevelsPerRound));
+  Box found{box.upper, box.lower};
+  for (std::size_t c = 0; c < tested.size(); ++c) {
+    const Index a = static_cast<Index>(c) % d;
+    found.lower(a) = std::min(found.lower(a), std::max(box.lower(a), grid.face(a, tested[c])));
+    found.upper(a) = std::max(found.upper(a), std::min(box.upper(a), grid.face(a, tested[c] + 1)));
+  }
+  return found;
+}
+
+/// Shrinks `box` until it fits the surface; empty (d = 0) when there is none in it.
+Box shrink(const Surface& surface, Box box, const Context& context) {
+  for (;;) {
+    const Box smaller = shrink_once(surface, box, context);
+    if (smaller.dim() == 0) return smaller;
+    const double rounding = 0x1p14 * std::numeric_limits<double>::epsilon() *
+                            std::max(smaller.lower.lpNorm<Eigen::Infinity>(), smaller.upper.lpNorm<Eigen::Infinity>());
+    const double before = box.extent().maxCoeff();
+    const double after = smaller.extent().maxCoeff();
+    box = smaller;
+    // Once the whole cube is in use, another round brings nothing; a single point shrinks until rounding ends it.
+    if (after > 0.6 * before || after <= rounding || after <= std::numeric_limits<double>::min() * 0x1p60) return box;
+  }
+}
+
+/// The box around points of interest on an axis where the surface does not end.
+Box around(const PointsIn& near, Index d) {
+  if (near.cols() == 0) return cube(Vector::Zero(d), kDefaultHalfWidth);
+  const Vector lower = near.rowwise().minCoeff();
+  const Vector upper = near.rowwise().maxCoeff();
+  double margin = std::max((upper - lower).maxCoeff(), 0.5 * near.lpNorm<Eigen::Infinity>());
+  if (margin == 0) margin = kDefaultHalfWidth;
+  return {lower.array() - margin, upper.array() + margin};
+}
+
+[[noreturn]] void throw_empty(const Surface& surface, const std::string& where) {
+  throw EmptySurface(
+      "there is no surface: " + std::string(surface.codim() == 1 ? "F = 0 has" : "the equations together have") +
+      " no solution " + (surface.domain() != nullptr ? "inside the domain " : "") + where);
+}
+
+Box by_bounds(const Surface& surface, const PointsIn& near, const Context& context) {
+  const Index d = surface.dim();
+  double reach = kReach;
+  if (near.cols() > 0) reach = std::max(reach, 4 * near.lpNorm<Eigen::Infinity>());
+  const Box everywhere = cube(Vector::Zero(d), reach);
+  const Box found = shrink(surface, everywhere, context);
+  if (found.dim() == 0) throw_empty(surface, "within +-" + detail::describe(reach) + " (proved by interval bounds)");
+  Eigen::Array<bool, Eigen::Dynamic, 1> endless = found.lower.array() <= -reach || found.upper.array() >= reach;
+  if (!endless.any()) return found;
+
+  Box window = around(near, d);
+  for (;;) {
+    Box box = found;
+    for (Index a = 0; a < d; ++a) {
+      if (!endless(a)) continue;
+      box.lower(a) = window.lower(a);
+      box.upper(a) = window.upper(a);
+    }
+    const Box shrunk = shrink(surface, box, context);
+    if (shrunk.dim() != 0) return shrunk;
+    if (window.upper.maxCoeff() >= reach) throw_empty(surface, "near the points asked about");
+    const Vector middle = 0.5 * (window.lower + window.upper);
+    const Vector half = window.extent();  // twice as wide
+    window = {middle - half, middle + half};
+  }
+}
+
+/// Where Newton's iteration takes starts scattered over a cube; its columns are those that arrive in the domain.
+Points trial(const Surface& surface, const Vector& centre, double half_width) {
+  const Index d = surface.dim();
+  Points starts(d, kTrials);
+  // Roberts' additive recurrence: well spread in any dimension, and always the same.
+  double root = 2;
+  for (int i = 0; i < 40; ++i) root = std::pow(1 + root, 1.0 / static_cast<double>(d + 1));
+  for (Index j = 0; j < kTrials; ++j) {
+    for (Index a = 0; a < d; ++a) {
+      const double position = 0.5 + static_cast<double>(j + 1) * std::pow(root, -static_cast<double>(a + 1));
+      starts(a, j) = centre(a) + half_width * (2 * (position - std::floor(position)) - 1);
+    }
+  }
+  const auto evaluator = surface.make_evaluator();
+  Eigen::Array<bool, Eigen::Dynamic, 1> good =
+      project_to_surface(*evaluator, d, surface.codim(), starts, {.tolerance = 1e-9 * half_width, .max_steps = 60});
+  good = good && surface.inside_domain(starts, 1e-6 * half_width);
+  std::vector<Index> arrived;
+  for (Index j = 0; j < kTrials; ++j) {
+    if (good(j) && (starts.col(j) - centre).lpNorm<Eigen::Infinity>() <= 4 * half_width) arrived.push_back(j);
+  }
+  return starts(Eigen::all, arrived);
+}
+
+Box bounding_box(const Points& points) { return {points.rowwise().minCoeff(), points.rowwise().maxCoeff()}; }
+
+Box with_margin(const Box& box, double part) {
+  const double margin = part * box.diagonal();
+  return {box.lower.array() - margin, box.upper.array() + margin};
+}
+
+bool about_the_same(const Box& a, const Box& b) {
+  const double size = std::max(a.diagonal(), b.diagonal());
+  return std::max((a.lower - b.lower).lpNorm<Eigen::Infinity>(), (a.upper - b.upper).lpNorm<Eigen::Infinity>()) <=
+         0.15 * size;
+}
+
+Box by_trial(const Surface& surface, const PointsIn& near, const Context& context) {
+  const Index d = surface.dim();
+  const Vector centre = near.cols() > 0 ? Vector(near.rowwise().mean()) : Vector::Zero(d);
+  std::vector<Box> boxes;
+  bool any = false;
+  for (double half_width = 1e-3; half_width <= 2e6; half_width *= 4) {
+    context.check_cancelled();
+    const Points arrived = trial(surface, centre, half_width);
+    any = any || arrived.cols() > 0;
+    if (arrived.cols() < kTrials / 16) {
+      boxes.clear();
+      continue;
+    }
+    boxes.push_back(bounding_box(arrived));
+    const std::size_t n = boxes.size();
+    // The starts must reach well beyond what they find.
+    if (n >= 3 && about_the_same(boxes[n - 1], boxes[n - 2]) && about_the_same(boxes[n - 1], boxes[n - 3]) &&
+        half_width > 4 * boxes[n - 1].diagonal()) {
+      Box box = boxes[n - 1];
+      for (std::size_t i = n - 3; i < n; ++i) {
+        box = {box.lower.cwiseMin(boxes[i].lower), box.upper.cwiseMax(boxes[i].upper)};
+      }
+      return with_margin(box, kTrialMargin);
+    }
+  }
+  if (!any) throw_empty(surface, "that Newton's iteration finds from anywhere within +-1e6");
+  return around(near, d);
+}
+
+}  // namespace
+
+Box find_box(const Surface& surface, const PointsIn& near, const Context& context) {
+  if (near.rows() != surface.dim()) {
+    throw InvalidArgument("the points of interest have " + std::to_string(near.rows()) + " coordinates, the surface " +
+                          std::to_string(surface.dim()) + " dimensions");
+  }
+  if (!near.allFinite()) throw InvalidArgument("a point of interest is not finite");
+  if (surface.box()) return *surface.box();
+  if (surface.samples() != nullptr && surface.samples()->size() > 0) {
+    return with_margin(bounding_box(surface.samples()->points), kSampleMargin);
+  }
+  const CrossingTest test(surface, Vector::Zero(surface.dim()), 1);
+  return test.has_bounds() ? by_bounds(surface, near, context) : by_trial(surface, near, context);
+}
+
+}  // namespace taut
