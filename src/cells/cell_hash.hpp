@@ -7,12 +7,13 @@
 
 namespace taut::detail {
 
-/// Bits of a coordinate that choose the place inside a block of cells: about 64 cells share a block, whose slots are
-/// neighbours in the hash, so that looking up the neighbours of a cell touches a few cache lines only.
+/// Bits of a coordinate that choose the place inside a block of cells. 2^4 cells share a block, whose slots share a cache
+/// line, so that looking up the neighbours of a cell touches few lines; larger blocks fill the table too unevenly.
 constexpr int block_bits(Index dim, Index axis) {
-  if (dim <= 2) return 3;
-  if (dim == 3) return 2;
-  return axis < 6 ? 1 : 0;
+  if (dim == 1) return axis == 0 ? 4 : 0;
+  if (dim == 2) return 2;
+  if (dim == 3) return axis == 0 ? 2 : 1;
+  return axis < 4 ? 1 : 0;
 }
 
 constexpr int block_bits(Index dim) {

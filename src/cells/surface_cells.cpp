@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "cells/cell_hash.hpp"
 #include "cells/memory_guard.hpp"
 #include "cells/refine.hpp"
 #include "core/parallel.hpp"
@@ -122,7 +121,7 @@ class CentreProjector {
 int tile_level(Index dim, bool has_bounds) {
   // Without bounds, cells larger than asked for cannot be refused safely, so tiles do not pay above d = 3.
   if (dim > 6 || (!has_bounds && dim > 3)) return 0;
-  return detail::block_bits(dim, 0);
+  return dim <= 2 ? 3 : dim == 3 ? 2 : 1;
 }
 
 }  // namespace
