@@ -95,9 +95,11 @@ void CrossingTest::test_bounds(Index n, std::uint8_t* may_cross) {
                      .value_lower = value_lower_.data(),
                      .value_upper = value_upper_.data()});
   for (Index j = 0; j < n; ++j) {
-    // Not a number says nothing: such a cell stays.
+    // Bounds that are both NaN: F has no value in the whole cell.
     for (Index i = 0; i < k; ++i) {
-      if (value_lower_[idx(j * k + i)] > 0 || value_upper_[idx(j * k + i)] < 0) may_cross[j] = 0;
+      const double lower = value_lower_[idx(j * k + i)];
+      const double upper = value_upper_[idx(j * k + i)];
+      if (lower > 0 || upper < 0 || (std::isnan(lower) && std::isnan(upper))) may_cross[j] = 0;
     }
   }
 }
@@ -181,7 +183,8 @@ void CrossingTest::test_domain(Index n, std::uint8_t* may_cross) {
   }
   for (Index slot = 0; slot < count; ++slot) {
     for (Index i = 0; i < m; ++i) {
-      if (value_upper_[idx(slot * m + i)] < 0) may_cross[kept_[idx(slot)]] = 0;
+      const double upper = value_upper_[idx(slot * m + i)];
+      if (upper < 0 || std::isnan(upper)) may_cross[kept_[idx(slot)]] = 0;
     }
   }
 }

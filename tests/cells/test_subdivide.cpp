@@ -9,6 +9,7 @@
 
 #include "support/interval_surfaces.hpp"
 #include "taut/core/error.hpp"
+#include "taut/surface/formula.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut {
@@ -157,6 +158,26 @@ TEST(Subdivide, WorksAtAnySizeAndPlace) {
     EXPECT_NEAR(static_cast<double>(grid.num_cells()), 1880, 60) << scale;
     EXPECT_NE(grid.find_point(centre + scale * Eigen::Vector3d(0.6, 0, 0.8)), CellGrid::kNone);
   }
+}
+
+TEST(Subdivide, SkipsWhereAFormulaHasNoValue) {
+  // A hemisphere as a graph: F is NaN outside the unit disc's cylinder, most of the box.
+  const Surface dome = parse_surface("z = sqrt(1 - x^2 - y^2)");
+  const Box box{Vector::Constant(3, -3), Vector::Constant(3, 3)};
+  const CellGrid grid = subdivide(dome, {.size = 0.1, .box = box});
+  EXPECT_LE(grid.num_cells(), 2000);
+  for (const double angle : {0.1, 0.7, 1.3, 1.5}) {
+    EXPECT_NE(grid.find_point(Eigen::Vector3d(0.6 * std::sin(angle), 0.8 * std::sin(angle), std::cos(angle))),
+              CellGrid::kNone);
+  }
+}
+
+TEST(Subdivide, FormulasAndHandWrittenBoundsAgree) {
+  const Surface formula = parse_surface("(x^2-2.5)^2 + (y^2-2.5)^2 + (z^2-2.5)^2 = 6.95");
+  const Box box{Vector::Constant(3, -2.5), Vector::Constant(3, 2.5)};
+  const CellGrid a = subdivide(formula, {.size = 0.06, .box = box});
+  const CellGrid b = subdivide(test::bounded_tangle_cube(), {.size = 0.06, .box = box});
+  EXPECT_EQ(a.num_cells(), b.num_cells());
 }
 
 TEST(Subdivide, ThreadsDoNotChangeTheCells) {
