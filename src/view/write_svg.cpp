@@ -181,7 +181,9 @@ class SvgWriter {
               (hidden ? css_colour(point.colour) : "#ffffff") + "\" stroke-width=\"2\"" +
               (hidden ? " stroke-opacity=\"0.7\"" : "") + "/>\n";
       if (point.label.empty()) continue;
-      const bool to_left = seen.x < 0.5 * options_.width && seen.x > 120;
+      constexpr double kLabelRoom = 110;
+      const bool room_right = seen.x < options_.width - kLabelRoom;
+      const bool to_left = seen.x > kLabelRoom && (!room_right || seen.x < 0.5 * options_.width);
       svg_ += "<text" + attribute("x", seen.x + (to_left ? -1 : 1) * (radius + 6)) + attribute("y", seen.y - radius) +
               attribute("font-size", kTextSize + 1) + " font-weight=\"600\" fill=\"#1b2733\" text-anchor=\"" +
               (to_left ? "end" : "start") +

@@ -68,22 +68,24 @@
   function fit() {
     const { right, top, back } = axes();
     const aspect = Math.max(0.2, canvas.clientWidth / Math.max(1, canvas.clientHeight));
-    const sx = tanHalf * aspect * 0.9;
-    const sy = tanHalf * 0.84;
+    // Tangents to the left, right, lower and upper margin; below stand the buttons.
+    const margin = [0.9 * aspect, 0.9 * aspect, 0.78, 0.88].map((part) => part * tanHalf);
     const depth = scene.flat ? 0 : 1;
     const most = [-Infinity, -Infinity, -Infinity, -Infinity];
     everyPosition((x, y, z) => {
       const px = right[0] * x + right[1] * y + right[2] * z;
       const py = top[0] * x + top[1] * y + top[2] * z;
       const pz = depth * (back[0] * x + back[1] * y + back[2] * z);
-      most[0] = Math.max(most[0], pz * sx - px);
-      most[1] = Math.max(most[1], pz * sx + px);
-      most[2] = Math.max(most[2], pz * sy - py);
-      most[3] = Math.max(most[3], pz * sy + py);
+      most[0] = Math.max(most[0], pz * margin[0] - px);
+      most[1] = Math.max(most[1], pz * margin[1] + px);
+      most[2] = Math.max(most[2], pz * margin[2] - py);
+      most[3] = Math.max(most[3], pz * margin[3] + py);
     });
-    const needed = Math.max((most[0] + most[1]) / (2 * sx), (most[2] + most[3]) / (2 * sy));
-    camera.distance = Math.max(needed, 1e-3 * scene.radius);
-    camera.target = add(times(right, (most[1] - most[0]) / 2), times(top, (most[3] - most[2]) / 2));
+    const needed = [0, 2].map((i) => (most[i] + most[i + 1]) / (margin[i] + margin[i + 1]));
+    const d = Math.max(...needed, 1e-3 * scene.radius);
+    const middle = [0, 2].map((i) => (d * margin[i] - most[i] + most[i + 1] - d * margin[i + 1]) / 2);
+    camera.distance = d;
+    camera.target = add(times(right, middle[0]), times(top, middle[1]));
   }
 
   function reset() {
@@ -536,8 +538,8 @@
       use("wire", { ...common, size: 0, ink: [...part.colour.map((c) => (dark ? 0.5 + 0.5 * c : c)), 1] });
       drawElements(gl.LINES, part);
     }
-    if (shown.paths && parts.tubes) drawPaths(common);
     if (shown.cells && scene.cells) drawCells(common, dark);
+    if (shown.paths && parts.tubes) drawPaths(common);
     gl.bindVertexArray(null);
     placeLabels(common);
   }
@@ -572,7 +574,8 @@
       if (span.hidden) continue;
       const x = (0.5 + (0.5 * clip[0]) / clip[3]) * canvas.clientWidth;
       const y = (0.5 - (0.5 * clip[1]) / clip[3]) * canvas.clientHeight;
-      const left = x < canvas.clientWidth / 2 && x > span.offsetWidth + 16;
+      const room = [x, canvas.clientWidth - x].map((width) => width > span.offsetWidth + 16);
+      const left = room[0] && (!room[1] || x < canvas.clientWidth / 2);
       span.style.transform = `translate(${x + (left ? -12 - span.offsetWidth : 12)}px, ${y - 20}px)`;
     }
   }
