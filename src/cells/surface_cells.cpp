@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "cells/domain_edge.hpp"
 #include "cells/memory_guard.hpp"
 #include "cells/refine.hpp"
 #include "core/parallel.hpp"
@@ -21,6 +23,8 @@ constexpr Index kGrain = 1024;
 constexpr double kReach = 1.5;
 // Of a cell: the centre's projection may stop here, far below what marching sees.
 constexpr double kTolerance = 1e-12;
+// Of a cell: how far outside the domain a point on its edge may lie by rounding.
+constexpr double kEdgeSlack = 1e-9;
 // Of a cell: where a projection starts again that failed from the centre (two thin sheets meet in one cell, and the
 // gradient vanishes between them).
 constexpr double kRetryOffset = 0.25;
@@ -36,6 +40,7 @@ class CentreProjector {
         d_(surface.dim()),
         size_(size),
         options_{.tolerance = kTolerance * size, .max_steps = 30} {
+    if (surface.domain() != nullptr) edge_.emplace(surface);
     options_.max_distance = 2 * kReach * size * std::sqrt(static_cast<double>(d_));
   }
 
@@ -71,9 +76,24 @@ class CentreProjector {
   void project(const Eigen::MatrixXd& starts) {
     moved_ = starts;
     good_ = project_to_surface(*evaluator_, d_, surface_.codim(), moved_, options_, &normals_);
-    if (surface_.domain() != nullptr) good_ = good_ && surface_.inside_domain(moved_);
+    if (edge_) pull_into_domain();
     for (Index j = 0; j < starts.cols(); ++j) {
       if ((moved_.col(j) - starts.col(j)).lpNorm<Eigen::Infinity>() > kReach * size_) good_(j) = false;
+    }
+  }
+
+  /// A centre that projects outside the domain is represented by a point on its edge, so that the rim is not frayed.
+  void pull_into_domain() {
+    const Eigen::Array<bool, Eigen::Dynamic, 1> inside = surface_.inside_domain(moved_);
+    for (Index j = 0; j < moved_.cols(); ++j) {
+      if (!good_(j) || inside(j)) continue;
+      Eigen::MatrixXd normal;
+      Eigen::MatrixXd point = moved_.col(j);
+      good_(j) = edge_->pull(point, options_, kEdgeSlack * size_) &&
+                 project_to_surface(*evaluator_, d_, surface_.codim(), point, options_, &normal)(0);
+      if (!good_(j)) continue;
+      moved_.col(j) = point;
+      normals_.col(j) = normal;
     }
   }
 
@@ -112,6 +132,7 @@ class CentreProjector {
   Index d_;
   double size_;
   ProjectionOptions options_;
+  std::optional<detail::DomainEdge> edge_;
   Eigen::MatrixXd centres_, moved_, normals_;
   Eigen::Array<bool, Eigen::Dynamic, 1> good_;
   std::vector<Index> failed_;

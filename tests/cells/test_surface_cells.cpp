@@ -5,7 +5,9 @@
 #include <set>
 #include <vector>
 
+#include "support/interval_surfaces.hpp"
 #include "support/surfaces.hpp"
+#include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -72,6 +74,33 @@ TEST(SurfaceCells, ThreadsDoNotChangeThem) {
     ASSERT_EQ(one.valid(i), four.valid(i));
     ASSERT_EQ(Vector(one.point(i)), Vector(four.point(i)));
   }
+}
+
+TEST(SurfaceCells, EveryCellAtTheEdgeOfTheDomainIsRepresentedInside) {
+  SurfaceExtras extras;
+  extras.domain = test::generic_function(3, 2, [](const auto& x, auto& y) {
+    y[0] = x[2] - 0.1 * x[0] - 0.3;
+    y[1] = 0.7 - x[0];
+  });
+  const Surface cap = test::bounded_sphere(Vector::Zero(3), 1, true, extras);
+  const SurfaceCells cells(cap, subdivide(cap, {.size = 0.1}));
+  EXPECT_GE(cells.num_valid(),
+            cells.num_cells() - 2);  // a corner of a cell may touch the surface outside the domain only
+  for (Index i = 0; i < cells.num_cells(); ++i) {
+    if (!cells.valid(i)) continue;
+    EXPECT_NEAR(cells.point(i).norm(), 1, 1e-12);
+    EXPECT_TRUE(cap.inside_domain(cells.point(i), 1e-9)(0));
+    EXPECT_LE((cells.normals(i) - cells.point(i)).norm(), 1e-12);
+  }
+}
+
+TEST(SurfaceCells, SheetsThinnerThanACellKeepTheirCells) {
+  // Two parallel planes 0.02 apart: cell centres half-way have no gradient.
+  const Surface sheets = test::generic_surface(3, 1, [](const auto& x, auto& y) { y[0] = test::square(x[2]) - 1e-4; });
+  const Box box{Vector::Constant(3, -1), Vector::Constant(3, 1)};
+  const SurfaceCells cells(
+      sheets, subdivide(sheets, {.size = 0.1, .box = box, .origin = Vector(Eigen::Vector3d(0.03, 0.03, -0.05))}));
+  EXPECT_EQ(cells.num_valid(), cells.num_cells());
 }
 
 TEST(SurfaceCells, RefusesSeedsOffTheSurface) {
