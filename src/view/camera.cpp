@@ -27,7 +27,7 @@ struct Blocker {
 };
 
 Blocker make_blocker(const Stage& stage) {
-  constexpr Index kFacesWanted = 10000;
+  constexpr Index kFacesWanted = 4000;
   Blocker blocker;
   for (const StageMesh& mesh : stage.meshes) {
     const auto first = static_cast<int>(blocker.positions.size());
@@ -36,7 +36,7 @@ Blocker make_blocker(const Stage& stage) {
       for (const auto& face : mesh.faces.colwise()) blocker.faces.emplace_back(face.array() + first);
       continue;
     }
-    const double block = 2 * stage.radius / 48;
+    const double block = 2 * stage.radius / 32;
     std::unordered_map<std::int64_t, int> number;
     std::vector<int> merged(static_cast<std::size_t>(mesh.positions.cols()));
     for (Index v = 0; v < mesh.positions.cols(); ++v) {

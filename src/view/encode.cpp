@@ -48,7 +48,7 @@ std::string deflate(const std::string& data) {
   uLongf size = compressBound(data.size());
   std::string out(size, '\0');
   if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(data.data()), data.size(),
-                8) != Z_OK) {
+                6) != Z_OK) {
     throw OutOfMemory("a picture of " + std::to_string(data.size()) + " bytes cannot be compressed: no memory");
   }
   out.resize(size);

@@ -236,7 +236,8 @@ class Band {
       float s = 0;
       for (std::size_t i = 0; i < 3; ++i) s += u[i] * (*batch.scalar)(face(static_cast<Index>(i)));
       if (!std::isnan(s)) {
-        base = to_linear(viridis((s - scale_.low) / (scale_.high - scale_.low)));
+        const float at = std::clamp((s - scale_.low) / (scale_.high - scale_.low), 0.0F, 1.0F);
+        base = linear_viridis()[static_cast<std::size_t>(at * 255 + 0.5F)];
         base *= isoline(s, slope);
       }
     }

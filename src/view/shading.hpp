@@ -38,6 +38,16 @@ inline Colour viridis(float t) {
   return {a.red + f * (b.red - a.red), a.green + f * (b.green - a.green), a.blue + f * (b.blue - a.blue)};
 }
 
+/// Viridis in 256 linear steps: what a rasteriser looks up for each sample.
+inline const std::array<Rgb, 256>& linear_viridis() {
+  static const std::array<Rgb, 256> table = [] {
+    std::array<Rgb, 256> t;
+    for (std::size_t i = 0; i < t.size(); ++i) t[i] = to_linear(viridis(static_cast<float>(i) / 255));
+    return t;
+  }();
+  return table;
+}
+
 /// Light on a matt, slightly glossy surface. All directions in camera axes (right, up, towards the viewer), unit; the
 /// normal may point either way. `base` is linear.
 inline Rgb shade(const Rgb& base, Eigen::Vector3f normal, const Eigen::Vector3f& view, float gloss) {
@@ -56,7 +66,9 @@ inline Rgb shade(const Rgb& base, Eigen::Vector3f normal, const Eigen::Vector3f&
   const Rgb light = 0.84F * key_light * Rgb(1.0F, 0.98F, 0.95F) + 0.20F * fill_light * Rgb(0.85F, 0.93F, 1.0F) +
                     0.42F * (sky * Rgb(0.96F, 0.98F, 1.0F) + (1 - sky) * Rgb(0.58F, 0.57F, 0.58F));
   const float half = std::max(0.0F, normal.dot((key + view).normalized()));
-  const float shine = gloss * std::pow(half, 48.0F);
+  const float half_3 = half * half * half;
+  const float half_12 = (half_3 * half_3) * (half_3 * half_3);
+  const float shine = gloss * (half_12 * half_12) * (half_12 * half_12);  // the 48th power
   const float grazing = 1 - facing;
   const float rim = 1 - 0.38F * grazing * grazing * grazing;
   return colour * light * rim + shine;

@@ -205,7 +205,7 @@ std::string fill_in(std::string_view text, const Values& values) {
 
 std::string to_html(const Scene& scene) {
   const Stage stage = detail::make_stage(scene);
-  PictureOptions still;
+  PictureOptions still{.width = 900, .height = 600};
   still.towards_viewer = detail::view_direction(stage, still);
   std::string facts;
   for (const SceneFact& fact : scene.facts) {
