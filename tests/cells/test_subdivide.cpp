@@ -55,7 +55,7 @@ TEST(Subdivide, NoCrossedCellIsEverLost) {
       for (int repeat = 0; repeat < (d <= 4 ? 4 : 2); ++repeat) {
         const Surface surface = test::generic_surface(d, k, RandomEquations(k, d, random));
         const Box box{Vector::Constant(d, -2.5), Vector::Constant(d, 2.5)};
-        const double size = d <= 3 ? 0.07 : d == 4 ? 0.2 : 0.6;
+        const double size = d <= 3 ? 0.07 : d == 4 ? 0.25 : d == 5 ? 0.7 : 0.9;
         CellGrid grid(Vector::Zero(d), size);
         try {
           grid = subdivide(surface, {.size = size, .box = box});
