@@ -249,8 +249,10 @@ class BinaryRows {
       std::uint64_t count = 1;
       if (property.is_list) {
         const double n = value(property, property.count_type);
-        if (!(n >= 0) || n != std::floor(n))
+        if (!(n >= 0) || n != std::floor(n)) {
           fail("list " + quote(property.name) + " has an impossible length; the file is damaged");
+        }
+        if (n > static_cast<double>(remaining())) fail_short();
         count = static_cast<std::uint64_t>(n);
       }
       if (count > remaining() / size_of(property.type)) fail_short();

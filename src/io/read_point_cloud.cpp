@@ -39,6 +39,7 @@ std::string known_extensions() {
   return list;
 }
 
+/// Throws IoError for an extension nobody reads.
 const Format& format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   const auto* format =
@@ -74,6 +75,23 @@ void check_cloud(const InputFile& file, PointCloud& cloud) {
 
 }  // namespace
 
+PointCloud parse_point_cloud(InputFile file) {
+  const Format& format = format_of(file.path);
+  const std::string_view kind = recognise(file.bytes);
+  if (!kind.empty() && kind != format.kind) {
+    file.fail("the content is " + std::string(kind) + ", not what " + std::string(format.extension) +
+              " stands for; rename, unpack or convert it");
+  }
+  if (format.text) normalise_text(file);
+  try {
+    PointCloud cloud = format.read(file);
+    check_cloud(file, cloud);
+    return cloud;
+  } catch (const std::bad_alloc&) {
+    file.fail("its points do not fit into memory; thin the file");
+  }
+}
+
 void check_declared(const InputFile& file, std::uint64_t count, std::uint64_t bytes_each, std::uint64_t available,
                     const std::string& where) {
   if (bytes_each == 0 || count <= available / bytes_each) return;
@@ -99,21 +117,9 @@ const std::vector<std::string>& point_cloud_extensions() {
 }
 
 PointCloud read_point_cloud(const std::filesystem::path& path, const Context& context) {
-  const detail::Format& format = detail::format_of(path);
-  detail::InputFile file = detail::read_file(path, context);
-  const std::string_view kind = detail::recognise(file.bytes);
-  if (!kind.empty() && kind != format.kind) {
-    file.fail("the content is " + std::string(kind) + ", not what " + std::string(format.extension) +
-              " stands for; rename, unpack or convert it");
-  }
-  if (format.text) detail::normalise_text(file);
-  try {
-    PointCloud cloud = format.read(file);
-    detail::check_cloud(file, cloud);
-    return cloud;
-  } catch (const std::bad_alloc&) {
-    file.fail("its points do not fit into memory; thin the file");
-  }
+  static_cast<void>(
+      detail::format_of(path));  // an unknown extension is the clearer answer, even if the file is missing
+  return detail::parse_point_cloud(detail::read_file(path, context));
 }
 
 }  // namespace taut

@@ -15,7 +15,7 @@ namespace {
 /// Gives corners with the very same coordinates one index.
 class Welder {
  public:
-  explicit Welder(const InputFile& file) : file_(file) {}
+  explicit Welder(const InputFile& file, std::size_t expected = 0) : file_(file) { indices_.reserve(expected); }
 
   int index_of(const std::array<double, 3>& corner) {
     Key key;
@@ -73,7 +73,7 @@ std::uint32_t load_u32(const char* p) {
 
 PointCloud read_binary(const InputFile& file) {
   const std::uint32_t count = load_u32(file.bytes.data() + 80);
-  Welder welder(file);
+  Welder welder(file, count / 2);  // a closed mesh has half as many vertices as triangles
   for (std::size_t t = 0; t < count; ++t) {
     const std::size_t offset = kBinaryHeader + t * kBinaryTriangle + 12;  // after the facet normal
     std::array<std::array<double, 3>, 3> triangle;

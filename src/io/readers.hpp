@@ -11,6 +11,9 @@
 
 namespace taut::detail {
 
+/// Reads what `read_point_cloud` promises from bytes already in memory; the path's extension decides the format.
+[[nodiscard]] PointCloud parse_point_cloud(InputFile file);
+
 // One function a format. Each throws IoError on anything wrong; `read_point_cloud` then checks what they share.
 [[nodiscard]] PointCloud read_ply(const InputFile& file);
 [[nodiscard]] PointCloud read_obj(const InputFile& file);

@@ -1,0 +1,42 @@
+// The file readers on arbitrary bytes: each must return a valid cloud or throw an IoError, and hold no more memory than
+// a multiple of the input's size.
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <sstream>
+#include <string>
+
+#include "io/readers.hpp"
+#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_point_cloud.hpp"
+
+namespace {
+
+void require(bool condition) {
+  if (!condition) std::abort();
+}
+
+void check(const taut::PointCloud& cloud) {
+  require(cloud.size() > 0 && cloud.points.allFinite() && cloud.normals.allFinite());
+  require(cloud.normals.cols() == 0 || cloud.normals.cols() == cloud.size());
+  require(cloud.faces.size() == 0 || (cloud.faces.minCoeff() >= 0 && cloud.faces.maxCoeff() < cloud.size()));
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto& extensions = taut::point_cloud_extensions();
+  if (size < 2) return 0;
+  const std::string& extension = extensions[data[0] % extensions.size()];
+  const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  try {
+    check(taut::detail::parse_point_cloud({"input" + extension, bytes, {}}));
+  } catch (const taut::IoError& error) {
+    require(std::string(error.what()).find('\n') == std::string::npos);
+  }
+  std::istringstream in(bytes);
+  taut::CsvRows rows(in, "input");
+  for (taut::CsvRow row; rows.next(row);) require(row.problem.empty() || row.line > 0);
+  return 0;
+}
