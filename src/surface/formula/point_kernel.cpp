@@ -104,26 +104,55 @@ HWY_INLINE void read_rows(const double* from, std::size_t stride, std::size_t co
   load_points<N>(rest, slots, i);
 }
 
-/// N slots into the N entries of each point.
+/// N slots into the N entries of each point: in small square blocks that are transposed in registers.
 template <std::uint32_t N>
 HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const std::uint32_t* rows, const Block& block) {
   const D d;
   const double* slots[N];
   for (std::uint32_t entry = 0; entry < N; ++entry) slots[entry] = block[rows[entry]];
   std::size_t j = 0;
-  if constexpr (N <= 4) {
+  if constexpr (N == 1) {
+    for (; j + hn::Lanes(d) <= count; j += hn::Lanes(d)) hn::StoreU(hn::Load(d, slots[0] + j), d, out + j);
+  } else if constexpr (N == 3) {
     for (; j + hn::Lanes(d) <= count; j += hn::Lanes(d)) {
-      const V a = hn::Load(d, slots[0] + j);
-      if constexpr (N == 1) hn::StoreU(a, d, out + j);
-      if constexpr (N == 2) hn::StoreInterleaved2(a, hn::Load(d, slots[1] + j), d, out + 2 * j);
-      if constexpr (N == 3) {
-        hn::StoreInterleaved3(a, hn::Load(d, slots[1] + j), hn::Load(d, slots[2] + j), d, out + 3 * j);
+      hn::StoreInterleaved3(hn::Load(d, slots[0] + j), hn::Load(d, slots[1] + j), hn::Load(d, slots[2] + j), d,
+                            out + 3 * j);
+    }
+  } else {
+#if HWY_TARGET <= HWY_AVX2  // AVX2 and AVX-512
+    const hn::CappedTag<double, 4> four;
+    const hn::CappedTag<double, 2> two;
+    constexpr std::uint32_t kFours = N / 4 * 4;
+    constexpr std::uint32_t kTwos = N / 2 * 2;
+    for (; j + 4 <= count; j += 4) {
+      double* row = out + j * N;
+      for (std::uint32_t e = 0; e < kFours; e += 4) {
+        const auto a = hn::Load(four, slots[e] + j);
+        const auto b = hn::Load(four, slots[e + 1] + j);
+        const auto c = hn::Load(four, slots[e + 2] + j);
+        const auto f = hn::Load(four, slots[e + 3] + j);
+        const auto ab_even = hn::InterleaveLower(four, a, b);  // a0 b0 a2 b2
+        const auto ab_odd = hn::InterleaveUpper(four, a, b);   // a1 b1 a3 b3
+        const auto cf_even = hn::InterleaveLower(four, c, f);
+        const auto cf_odd = hn::InterleaveUpper(four, c, f);
+        hn::StoreU(hn::ConcatLowerLower(four, cf_even, ab_even), four, row + e);
+        hn::StoreU(hn::ConcatLowerLower(four, cf_odd, ab_odd), four, row + N + e);
+        hn::StoreU(hn::ConcatUpperUpper(four, cf_even, ab_even), four, row + 2 * N + e);
+        hn::StoreU(hn::ConcatUpperUpper(four, cf_odd, ab_odd), four, row + 3 * N + e);
       }
-      if constexpr (N == 4) {
-        hn::StoreInterleaved4(a, hn::Load(d, slots[1] + j), hn::Load(d, slots[2] + j), hn::Load(d, slots[3] + j), d,
-                              out + 4 * j);
+      for (std::uint32_t half = 0; half < 4; half += 2) {
+        for (std::uint32_t e = kFours; e < kTwos; e += 2) {
+          const auto a = hn::Load(two, slots[e] + j + half);
+          const auto b = hn::Load(two, slots[e + 1] + j + half);
+          hn::StoreU(hn::InterleaveLower(two, a, b), two, row + half * N + e);
+          hn::StoreU(hn::InterleaveUpper(two, a, b), two, row + (half + 1) * N + e);
+        }
+      }
+      if constexpr (N % 2 != 0) {
+        for (std::uint32_t i = 0; i < 4; ++i) row[i * N + N - 1] = slots[N - 1][j + i];
       }
     }
+#endif
   }
   for (; j < count; ++j) {
     for (std::uint32_t entry = 0; entry < N; ++entry) out[j * N + entry] = slots[entry][j];
