@@ -145,7 +145,8 @@ void run_block(const Tape& tape, const BoxArrays& arrays, std::size_t first, std
       case Code::less_equal:
       case Code::choose:
       case Code::keep:
-      case Code::drop: break;  // derivatives only
+      case Code::drop:
+      default: break;  // not on a tape for boxes
     }
   }
 }

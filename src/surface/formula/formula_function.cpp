@@ -42,6 +42,7 @@ class FormulaEvaluator : public Evaluator {
   std::shared_ptr<const FormulaProgram> program_;
   std::size_t step_;
   const Tape* value_tape_ = nullptr;  // found once: asking the program takes a lock
+  const Tape* bounds_tape_ = nullptr;
   const Tape* jacobian_tape_ = nullptr;
   const Tape* hessian_tape_ = nullptr;
   const Tape* hessian_times_tape_ = nullptr;
@@ -181,11 +182,11 @@ void FormulaEvaluator::spread_nan(const PointBatch& batch, const double* value, 
 
 bool FormulaEvaluator::bounds(const BoxBatch& batch) {
   if (batch.n <= 0) return true;
-  if (value_tape_ == nullptr) value_tape_ = &program_->value();
+  if (bounds_tape_ == nullptr) bounds_tape_ = &program_->bounds();
   const auto n = static_cast<std::size_t>(batch.n);
-  const std::size_t slots_per_box = 3 * std::size_t{value_tape_->num_slots};
+  const std::size_t slots_per_box = 3 * std::size_t{bounds_tape_->num_slots};
   const std::size_t block = block_size(slots_per_box, n);
-  run_boxes(*value_tape_,
+  run_boxes(*bounds_tape_,
             {.lower = batch.lower,
              .upper = batch.upper,
              .dim = static_cast<std::size_t>(dim_),

@@ -51,6 +51,52 @@ HWY_INLINE void map3(const Instruction& ins, const Block& block, const F& f) {
   }
 }
 
+template <int kFirst, int kSecond>
+void map_fused(const Instruction& ins, const Block& block) {
+  constexpr auto first = static_cast<FirstOp>(kFirst);
+  constexpr auto second = static_cast<SecondOp>(kSecond);
+  constexpr bool reads_b = first == FirstOp::multiply || first == FirstOp::add || first == FirstOp::subtract;
+  constexpr bool reads_c =
+      second == SecondOp::add || second == SecondOp::multiply || second == SecondOp::minus || second == SecondOp::from;
+  const D d;
+  const double* slot_a = block[ins.a];
+  const double* slot_b = block[ins.b];
+  const double* slot_c = block[ins.c];
+  double* result = block[ins.dst];
+  const V value = lanes(ins.value);
+  const V value2 = lanes(ins.value2);
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
+    const V a = hn::Load(d, slot_a + i);
+    const V b = reads_b ? hn::Load(d, slot_b + i) : value;
+    const V c = reads_c ? hn::Load(d, slot_c + i) : value2;
+    V t = a;
+    if constexpr (first == FirstOp::multiply || first == FirstOp::multiply_c) t = hn::Mul(a, b);
+    if constexpr (first == FirstOp::square) t = hn::Mul(a, a);
+    if constexpr (first == FirstOp::add || first == FirstOp::add_c) t = hn::Add(a, b);
+    if constexpr (first == FirstOp::subtract) t = hn::Sub(a, b);
+    if constexpr (second == SecondOp::add || second == SecondOp::add_c) t = hn::Add(t, c);
+    if constexpr (second == SecondOp::multiply || second == SecondOp::multiply_c) t = hn::Mul(t, c);
+    if constexpr (second == SecondOp::minus) t = hn::Sub(t, c);
+    if constexpr (second == SecondOp::from || second == SecondOp::from_c) t = hn::Sub(c, t);
+    if constexpr (second == SecondOp::square) t = hn::Mul(t, t);
+    hn::Store(t, d, result + i);
+  }
+}
+
+using FusedKernel = void (*)(const Instruction&, const Block&);
+
+/// Kernels by code, from Code::fused on.
+struct FusedKernels {
+  FusedKernel kernels[kNumFused];
+
+  constexpr FusedKernels() : FusedKernels(std::make_integer_sequence<int, kNumFused>()) {}
+  template <int... I>
+  constexpr explicit FusedKernels(std::integer_sequence<int, I...>)
+      : kernels{map_fused<I / kNumSecond, I % kNumSecond>...} {}
+};
+
+constexpr FusedKernels kFusedKernels;
+
 /// Points [first, first + count) of an input array into a slot; the lanes left over repeat the last point.
 HWY_INLINE void read_input(const double* entry, std::size_t stride, std::size_t count, double* slot, std::size_t size) {
   for (std::size_t j = 0; j < count; ++j) slot[j] = entry[j * stride];
@@ -253,6 +299,7 @@ void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, s
       case Code::choose: map3(ins, block, [](V m, V a, V b) { return hn::IfThenElse(as_mask(m), a, b); }); break;
       case Code::keep: map2(ins, block, [](V m, V a) { return hn::IfThenElseZero(as_mask(m), a); }); break;
       case Code::drop: map2(ins, block, [](V m, V a) { return hn::IfThenZeroElse(as_mask(m), a); }); break;
+      default: kFusedKernels.kernels[static_cast<int>(ins.code) - static_cast<int>(Code::fused)](ins, block); break;
     }
   }
 }

@@ -78,7 +78,8 @@ Tape FormulaProgram::compile_outputs(bool with_jacobian, const std::vector<Parti
 }
 
 /// Adds the zeros of arrays that are written a whole row at a time. Arrays of size 0 are not asked for.
-Tape FormulaProgram::compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs) const {
+Tape FormulaProgram::compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs,
+                                  bool fuse) const {
   for (std::uint32_t array = 0; array < sizes.size(); ++array) {
     if (sizes[array] > kMaxOutputRow) continue;
     std::vector<bool> named(sizes[array]);
@@ -89,13 +90,23 @@ Tape FormulaProgram::compile_rows(const std::vector<std::uint32_t>& sizes, std::
       if (!named[entry]) outputs.push_back({array, entry, graph_.constant(0)});
     }
   }
-  return compile(graph_, inputs(), sizes, outputs);
+  return compile(graph_, inputs(), sizes, outputs, fuse);
 }
 
 const Tape& FormulaProgram::value() const {
   const std::scoped_lock lock(mutex_);
   if (!value_tape_) value_tape_ = compile_outputs(false, nullptr);
   return *value_tape_;
+}
+
+const Tape& FormulaProgram::bounds() const {
+  const std::scoped_lock lock(mutex_);
+  if (!bounds_tape_) {
+    std::vector<Output> outputs;
+    for (std::uint32_t i = 0; i < components_.size(); ++i) outputs.push_back({0, i, components_[i]});
+    bounds_tape_ = compile_rows({static_cast<std::uint32_t>(codim()), 0, 0}, std::move(outputs), false);
+  }
+  return *bounds_tape_;
 }
 
 const Tape& FormulaProgram::jacobian() const {

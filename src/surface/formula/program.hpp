@@ -25,6 +25,8 @@ class FormulaProgram {
   [[nodiscard]] Index codim() const { return static_cast<Index>(components_.size()); }
 
   [[nodiscard]] const Tape& value() const;
+  /// Value, for boxes.
+  [[nodiscard]] const Tape& bounds() const;
   /// Value and Jacobian.
   [[nodiscard]] const Tape& jacobian() const;
   /// Value, Jacobian and weighted Hessian; null when the Hessian is too large an expression (dense in many dimensions).
@@ -35,7 +37,8 @@ class FormulaProgram {
  private:
   void differentiate() const;
   [[nodiscard]] Tape compile_outputs(bool with_jacobian, const std::vector<Partial>* hessian) const;
-  [[nodiscard]] Tape compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs) const;
+  [[nodiscard]] Tape compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs,
+                                  bool fuse = true) const;
   [[nodiscard]] NodeId weighted(NodeId node) const;
   [[nodiscard]] std::vector<InputArray> inputs() const;
 
@@ -51,6 +54,7 @@ class FormulaProgram {
   mutable std::vector<Partial> jacobian_;  // row: component
   mutable std::vector<Partial> gradient_;  // of sum_i weight_i F_i; when k = 1 of F, weighted at the end
   mutable std::optional<Tape> value_tape_;
+  mutable std::optional<Tape> bounds_tape_;
   mutable std::optional<Tape> jacobian_tape_;
   mutable std::optional<Tape> hessian_tape_;
   mutable std::optional<Tape> hessian_times_tape_;

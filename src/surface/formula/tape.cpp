@@ -1,6 +1,8 @@
 #include "surface/formula/tape.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace taut::detail {
 namespace {
@@ -47,6 +49,8 @@ struct Form {
   NodeId slots[3] = {kNoNode, kNoNode, kNoNode};
   int num_slots = 0;
   double value = 0;
+  double value2 = 0;
+  bool third = false;  // fused: the last slot is operand c whatever the number of slots
 };
 
 Form form_of(const Graph& graph, NodeId id) {
@@ -82,17 +86,50 @@ Form form_of(const Graph& graph, NodeId id) {
   return form;
 }
 
+std::optional<FirstOp> first_op(Code code) {
+  switch (code) {
+    case Code::multiply: return FirstOp::multiply;
+    case Code::multiply_c: return FirstOp::multiply_c;
+    case Code::square: return FirstOp::square;
+    case Code::add: return FirstOp::add;
+    case Code::add_c: return FirstOp::add_c;
+    case Code::subtract: return FirstOp::subtract;
+    default: return std::nullopt;
+  }
+}
+
+/// The second operation of `form` when operand number `position` is the result of the first.
+std::optional<SecondOp> second_op(const Form& form, int position) {
+  switch (form.code) {
+    case Code::add: return SecondOp::add;
+    case Code::add_c: return SecondOp::add_c;
+    case Code::multiply: return SecondOp::multiply;
+    case Code::multiply_c: return SecondOp::multiply_c;
+    case Code::subtract: return position == 0 ? SecondOp::minus : SecondOp::from;
+    case Code::c_subtract: return SecondOp::from_c;
+    case Code::square: return SecondOp::square;
+    default: return std::nullopt;
+  }
+}
+
 class Compiler {
  public:
   Compiler(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<std::uint32_t>& output_sizes,
-           const std::vector<Output>& outputs)
-      : graph_(graph), inputs_(inputs), output_sizes_(output_sizes), outputs_(outputs), read_(inputs.size()) {}
+           const std::vector<Output>& outputs, bool fuse)
+      : graph_(graph),
+        inputs_(inputs),
+        output_sizes_(output_sizes),
+        outputs_(outputs),
+        fuse_(fuse),
+        read_(inputs.size()) {}
 
   Tape compile();
 
  private:
   [[nodiscard]] bool in_row(const Output& output) const { return output_sizes_[output.array] <= kMaxOutputRow; }
   void find_uses();
+  void choose_fusions();
+  [[nodiscard]] Form form(NodeId id) const;
   void emit(NodeId id);
   void emit_input(NodeId id);
   void emit_outputs(NodeId id);
@@ -107,9 +144,12 @@ class Compiler {
   const std::vector<InputArray>& inputs_;
   const std::vector<std::uint32_t>& output_sizes_;
   const std::vector<Output>& outputs_;
+  const bool fuse_;
   Tape tape_;
   std::vector<NodeId> order_;
   std::vector<std::uint32_t> uses_;  // readers of a node's slot still to come
+  std::vector<NodeId> inner_;        // the operand computed in the same instruction, or kNoNode
+  std::vector<bool> absorbed_;       // computed inside of its only user's instruction
   std::vector<std::uint32_t> slot_;
   std::vector<std::uint32_t> free_;
   std::vector<bool> read_;                                        // input arrays that were read as rows
@@ -142,6 +182,38 @@ void Compiler::find_uses() {
       row_nodes_[array][entry] = id;
     }
   }
+}
+
+/// A node with one reader is computed in that reader's instruction, where there is a code for the two.
+void Compiler::choose_fusions() {
+  inner_.assign(uses_.size(), kNoNode);
+  absorbed_.assign(uses_.size(), false);
+  if (!fuse_) return;
+  for (const NodeId id : order_) {
+    const Form outer = form_of(graph_, id);
+    for (int k = 0; k < outer.num_slots && inner_[id] == kNoNode; ++k) {
+      const NodeId operand = outer.slots[k];
+      if (uses_[operand] != 1 || inner_[operand] != kNoNode || !second_op(outer, k)) continue;
+      if (!first_op(form_of(graph_, operand).code)) continue;
+      inner_[id] = operand;
+      absorbed_[operand] = true;
+    }
+  }
+}
+
+Form Compiler::form(NodeId id) const {
+  const Form outer = form_of(graph_, id);
+  const NodeId inner = inner_[id];
+  if (inner == kNoNode) return outer;
+  const int position = outer.slots[0] == inner ? 0 : 1;
+  Form fused = form_of(graph_, inner);
+  fused.code = fused_code(*first_op(fused.code), *second_op(outer, position));
+  fused.value2 = outer.value;
+  if (outer.num_slots == 2) {
+    fused.slots[fused.num_slots++] = outer.slots[1 - position];
+    fused.third = true;
+  }
+  return fused;
 }
 
 std::uint32_t Compiler::acquire() {
@@ -191,18 +263,20 @@ void Compiler::emit_input(NodeId id) {
 }
 
 void Compiler::emit(NodeId id) {
-  const Form form = form_of(graph_, id);
-  if (form.code == Code::input) {
+  const Form what = form(id);
+  if (what.code == Code::input) {
     emit_input(id);
     return;
   }
-  Instruction instruction{.code = form.code, .value = form.value};
-  if (form.code == Code::odd_power) instruction.b = graph_[id].b;
-  if (form.num_slots > 0) instruction.a = slot_of(form.slots[0]);
-  if (form.num_slots > 1) instruction.b = slot_of(form.slots[1]);
-  if (form.num_slots > 2) instruction.c = slot_of(form.slots[2]);
+  Instruction instruction{.code = what.code, .value = what.value, .value2 = what.value2};
+  if (what.code == Code::odd_power) instruction.b = graph_[id].b;
+  const int in_order = what.third ? what.num_slots - 1 : what.num_slots;
+  if (in_order > 0) instruction.a = slot_of(what.slots[0]);
+  if (in_order > 1) instruction.b = slot_of(what.slots[1]);
+  if (in_order > 2) instruction.c = slot_of(what.slots[2]);
+  if (what.third) instruction.c = slot_of(what.slots[in_order]);
   // Lanes are read before they are written, so a result may take the slot of an operand that ends here.
-  for (int k = 0; k < form.num_slots; ++k) release(form.slots[k]);
+  for (int k = 0; k < what.num_slots; ++k) release(what.slots[k]);
   instruction.dst = slot_[id] = acquire();
   tape_.instructions.push_back(instruction);
 }
@@ -236,13 +310,14 @@ void Compiler::emit_rows() {
 
 Tape Compiler::compile() {
   find_uses();
+  choose_fusions();
   for (const Output& output : outputs_) {
     if (in_row(output) || !graph_.is_constant(output.node)) continue;
     tape_.instructions.push_back(
         {.code = Code::output_constant, .b = output.entry, .c = output.array, .value = graph_[output.node].value});
   }
   for (const NodeId id : order_) {
-    if (graph_.is_constant(id)) continue;
+    if (graph_.is_constant(id) || absorbed_[id]) continue;
     emit(id);
     emit_outputs(id);
   }
@@ -253,8 +328,8 @@ Tape Compiler::compile() {
 }  // namespace
 
 Tape compile(const Graph& graph, const std::vector<InputArray>& inputs, const std::vector<std::uint32_t>& output_sizes,
-             const std::vector<Output>& outputs) {
-  return Compiler(graph, inputs, output_sizes, outputs).compile();
+             const std::vector<Output>& outputs, bool fuse) {
+  return Compiler(graph, inputs, output_sizes, outputs, fuse).compile();
 }
 
 }  // namespace taut::detail
