@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -11,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "hwy/targets.h"
 #include "taut/surface/formula.hpp"
 
 namespace taut {
@@ -145,6 +148,50 @@ TEST(FormulaMath, LanesDoNotDependOnTheirNeighbours) {
       EXPECT_TRUE(alone == together[j] || (std::isnan(alone) && std::isnan(together[j]))) << name << " " << x[j];
     }
   }
+}
+
+/// The C library's own functions (tanh and the like) may differ between machines; what runs in lanes may not.
+TEST(FormulaMath, EveryInstructionSetGivesTheSameBits) {
+  const auto function = parse_function(
+      "(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2) + sin(x*y)*exp(z) - sqrt(abs(x))/cos(z) + tan(y);"
+      "max(x*y*z, log(x^2+y^2)) - min(y, z, x^3)*sign(x)");
+  std::srand(11);
+  const Index n = 77;
+  const Points x = Points::Random(3, n) * 3;
+  const Points upper = x.array() + 0.1;
+  const Points weight = Points::Random(2, n);
+  Points first;
+  const std::int64_t available = hwy::SupportedTargets() | HWY_SCALAR;
+  for (const std::int64_t target :
+       {std::int64_t{0}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}, std::int64_t{HWY_SCALAR}}) {
+    if (target != 0 && (target & available) == 0) continue;
+    hwy::SetSupportedTargetsForTest(target);  // 0: what the machine has
+    hwy::GetChosenTarget().DeInit();
+    const auto evaluator = function->make_evaluator();
+    Points all(2 + 6 + 9 + 4, n);
+    Points value(2, n);
+    Points jacobian(6, n);
+    Points hessian(9, n);
+    Points lower_bound(2, n);
+    Points upper_bound(2, n);
+    evaluator->evaluate({.n = n,
+                         .x = x.data(),
+                         .value = value.data(),
+                         .jacobian = jacobian.data(),
+                         .weight = weight.data(),
+                         .hessian = hessian.data()});
+    evaluator->bounds({.n = n,
+                       .lower = x.data(),
+                       .upper = upper.data(),
+                       .value_lower = lower_bound.data(),
+                       .value_upper = upper_bound.data()});
+    all << value, jacobian, hessian, lower_bound, upper_bound;
+    if (first.size() == 0) first = all;
+    EXPECT_EQ(std::memcmp(first.data(), all.data(), sizeof(double) * static_cast<std::size_t>(all.size())), 0)
+        << hwy::TargetName(target);
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
 }
 
 }  // namespace
