@@ -1,9 +1,11 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "march/edge.hpp"
@@ -21,6 +23,7 @@ struct Neighbour {
   double length;            ///< |z|, the geodesic distance of x and y
   double along;             ///< -z . g: how far x lies ahead of y
   double estimate;          ///< of u at x from y alone
+  Index source;             ///< which source the distance is from
 };
 
 /// What the neighbours say about x.
@@ -31,12 +34,13 @@ struct Arrival {
   /// True when x lies between the rays through its neighbours, n = 1 included. False: beside all rays (at an edge of
   /// the surface, on the cut locus, or come too early), the distance is known from a single neighbour.
   bool enclosed;
+  Index source;  ///< which source the distance is from
 };
 
-/// An estimate of u at x from one point y alone, as if the front through y were a circle about its source. `along`:
-/// component of the step along the gradient at y.
-inline double circular_estimate(double distance, double along, double length) {
-  return std::sqrt(std::max(0.0, distance * distance + 2 * distance * along + length * length));
+/// The square of an estimate of u at x from one point y alone, as if the front through y were a circle about its
+/// source. `along`: component of the step along the gradient at y; `length2`: its squared length.
+inline double circular_estimate2(double distance, double along, double length2) {
+  return std::max(0.0, distance * distance + 2 * distance * along + length2);
 }
 
 /// Neighbours whose gradients differ by more than this (cosine) from the first one's belong to another branch of the
@@ -56,53 +60,96 @@ class ArrivalSolver {
   /// Starts with a new point x and no neighbours.
   void begin(const SurfacePoint& x) {
     x_ = x;
-    frame_.set(x.normals);
-    neighbours_.clear();
+    candidates_.clear();
   }
-  /// Adds neighbour y with distance u and gradient (d). Does nothing when no edge joins it to x.
-  void add(const SurfacePoint& y, double u, const double* gradient);
-  [[nodiscard]] bool empty() const { return neighbours_.empty(); }
-  /// Needs a neighbour.
-  [[nodiscard]] Arrival<D> solve() const;
+  /// Offers neighbour y with distance u, gradient (d) and source. Whether an edge joins it to x is found out later.
+  /// What the pointers point to must stay until solve().
+  void add(const SurfacePoint& y, double u, const double* gradient, Index source) {
+    const Map g(gradient, d_);
+    const Vec chord = Map(x_.x, d_) - Map(y.x, d_);
+    const double along = g.dot(chord);
+    const double chord2 = chord.squaredNorm();
+    candidates_.push_back({y, gradient, chord, u, chord2, along, circular_estimate2(u, along, chord2), source});
+  }
+  /// Empty when no edge joins a neighbour to x.
+  [[nodiscard]] std::optional<Arrival<D>> solve();
 
  private:
   using Vec = SmallVector<D>;
+  using Map = Eigen::Map<const Vec>;
+
+  /// A neighbour as it was offered.
+  struct Candidate {
+    SurfacePoint point;
+    const double* gradient;
+    Vec chord;  // x - y
+    double distance;
+    double chord2;
+    double along;      // chord . gradient
+    double estimate2;  // of the squared distance at x
+    Index source;
+  };
 
   [[nodiscard]] Index codim() const { return K == Eigen::Dynamic ? k_ : K; }
   [[nodiscard]] Index surface_dim() const { return d_ - codim(); }
 
+  bool unroll(const Candidate& y, Neighbour<D>& neighbour) const;
+  void unroll_all();
+  void drop(std::size_t c) { candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(c)); }
+  [[nodiscard]] std::size_t best_candidate() const;
   [[nodiscard]] const Neighbour<D>& best() const;
   [[nodiscard]] Arrival<D> one_sided() const;
-  [[nodiscard]] Arrival<D> solve_on_surface() const;
+  [[nodiscard]] std::optional<Arrival<D>> solve_on_surface();
+  [[nodiscard]] Arrival<D> between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right,
+                                   double miss_right, Index source) const;
   [[nodiscard]] Arrival<D> solve_by_votes() const;
 
   Index d_;
   Index k_;
   SurfacePoint x_{};
   TangentFrame<D, K> frame_;
+  std::vector<Candidate> candidates_;
   std::vector<Neighbour<D>> neighbours_;
 };
 
+/// False when no edge joins y to x.
 template <int D, int K>
-void ArrivalSolver<D, K>::add(const SurfacePoint& y, double u, const double* gradient) {
+bool ArrivalSolver<D, K>::unroll(const Candidate& y, Neighbour<D>& neighbour) const {
   Edge<D> edge;
-  if (!make_edge<D, K>(y, x_, d_, k_, edge)) return;
-  const Vec g = Eigen::Map<const Vec>(gradient, d_);
+  if (!make_edge<D, K>(y.point, x_, d_, k_, edge)) return false;
+  const Map g(y.gradient, d_);
   const double component = edge.component(g);
   // Parallel transport along the edge: the tangent of the edge at y becomes its tangent at x, what is across stays.
   Vec chord = frame_.coordinates(edge.chord);
   const double norm = chord.norm();
   if (norm > 0) chord /= norm;
   const Vec across = g - (component / edge.tangent_length) * (edge.chord - edge.normal_part);
-  Vec carried = frame_.coordinates(across) + component * chord;
-  carried.normalize();
-  Neighbour<D>& neighbour = neighbours_.emplace_back();
+  neighbour.gradient = (frame_.coordinates(across) + component * chord).normalized();
   neighbour.position = -edge.length * chord;
-  neighbour.gradient = carried;
-  neighbour.distance = u;
+  neighbour.distance = y.distance;
   neighbour.length = edge.length;
-  neighbour.along = -carried.dot(neighbour.position);
-  neighbour.estimate = circular_estimate(u, neighbour.along, edge.length);
+  neighbour.along = -neighbour.gradient.dot(neighbour.position);
+  neighbour.estimate = std::sqrt(circular_estimate2(y.distance, neighbour.along, edge.length * edge.length));
+  neighbour.source = y.source;
+  return true;
+}
+
+template <int D, int K>
+void ArrivalSolver<D, K>::unroll_all() {
+  neighbours_.clear();
+  Neighbour<D> neighbour;
+  for (const Candidate& y : candidates_) {
+    if (unroll(y, neighbour)) neighbours_.push_back(neighbour);
+  }
+}
+
+template <int D, int K>
+std::size_t ArrivalSolver<D, K>::best_candidate() const {
+  std::size_t least = 0;
+  for (std::size_t c = 1; c < candidates_.size(); ++c) {
+    if (candidates_[c].estimate2 < candidates_[least].estimate2) least = c;
+  }
+  return least;
 }
 
 template <int D, int K>
@@ -117,87 +164,178 @@ Arrival<D> ArrivalSolver<D, K>::one_sided() const {
   constexpr double kNearRay = 0.9;  // cosine
   if (surface_dim() > 1 && first.along > kNearRay * first.length) {
     const Vec ray = first.distance * first.gradient - first.position;
-    return {first.estimate, frame_.lift(Vec(ray / ray.norm())), false};
+    return {first.estimate, frame_.lift(Vec(ray / ray.norm())), false, first.source};
   }
   const Neighbour<D>& y = *std::min_element(neighbours_.begin(), neighbours_.end(), [](const auto& a, const auto& b) {
     return a.distance + a.length < b.distance + b.length;
   });
   const Vec direction = y.length > 0 ? Vec(-y.position / y.length) : y.gradient;
-  return {y.distance + y.length, frame_.lift(direction), surface_dim() == 1};
+  return {y.distance + y.length, frame_.lift(direction), surface_dim() == 1, y.source};
 }
 
 template <int D, int K>
-Arrival<D> ArrivalSolver<D, K>::solve() const {
-  if (surface_dim() == 1) return one_sided();
-  return surface_dim() == 2 ? solve_on_surface() : solve_by_votes();
+std::optional<Arrival<D>> ArrivalSolver<D, K>::solve() {
+  frame_.set(x_.normals);
+  constexpr bool kDynamic = D == Eigen::Dynamic;
+  if constexpr (kDynamic || D - K == 2) {
+    if (surface_dim() == 2) return solve_on_surface();
+  }
+  unroll_all();
+  if (neighbours_.empty()) return std::nullopt;
+  if constexpr (kDynamic || D - K >= 3) {
+    if (surface_dim() >= 3) return solve_by_votes();
+  }
+  return one_sided();
 }
 
 /// n = 2. The ray through x passes between two neighbours, one on either side: of those on each side the one whose ray
-/// passes x most closely. Fermat's principle on the segment z(t) between them: minimise sqrt(2 v(t)) + |z(t)|.
+/// passes x most closely. The choice is made with plain chords; what is chosen is then unrolled.
 template <int D, int K>
-Arrival<D> ArrivalSolver<D, K>::solve_on_surface() const {
+std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
   const Index k = codim();
-  const Neighbour<D>& first = best();
-  const Neighbour<D>* left = nullptr;
-  const Neighbour<D>* right = nullptr;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double miss_left = 0;
-  double miss_right = 0;
-  double least_left = kInfinity;
-  double least_right = kInfinity;
-  for (const Neighbour<D>& y : neighbours_) {
-    if (y.gradient.dot(first.gradient) < kMinBranchCosine) continue;
-    const double miss = y.gradient(k + 1) * y.position(k) - y.gradient(k) * y.position(k + 1);
-    // Those beside or ahead of x only where nobody is behind.
-    constexpr double kBehind = 0.3;
-    constexpr double kAhead = -0.3;
-    if (y.along < kAhead * y.length) continue;
-    const double measure = std::abs(miss) + (y.along < kBehind * y.length ? 4 * y.length : 0.0);
-    if (miss >= 0 && measure < least_left) {
-      least_left = measure;
-      miss_left = miss;
-      left = &y;
-    } else if (miss < 0 && measure < least_right) {
-      least_right = measure;
-      miss_right = miss;
-      right = &y;
+  Neighbour<D> first;
+  while (!candidates_.empty()) {
+    const std::size_t best = best_candidate();
+    if (!unroll(candidates_[best], first)) {
+      drop(best);
+      continue;
     }
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+    std::size_t chosen[2] = {kNone, kNone};  // with the ray to the left and to the right of x
+    double least[2] = {kInfinity, kInfinity};
+    for (std::size_t c = 0; c < candidates_.size(); ++c) {
+      const Candidate& y = candidates_[c];
+      const Vec gradient = frame_.coordinates(Map(y.gradient, d_));
+      if (gradient.dot(first.gradient) < kMinBranchCosine) continue;
+      const Vec chord = frame_.coordinates(y.chord);
+      const double miss = gradient(k) * chord(k + 1) - gradient(k + 1) * chord(k);
+      // Those beside or ahead of x only where nobody is behind.
+      constexpr double kBehind = 0.3;
+      const double along2 = y.along * std::abs(y.along);
+      if (along2 < -kBehind * kBehind * y.chord2) continue;
+      const double measure = std::abs(miss) + (along2 < kBehind * kBehind * y.chord2 ? 4 * std::sqrt(y.chord2) : 0.0);
+      const int side = miss >= 0 ? 0 : 1;
+      if (measure < least[side]) {
+        least[side] = measure;
+        chosen[side] = c;
+      }
+    }
+    Neighbour<D> pair[2];
+    std::size_t unusable = kNone;
+    for (int side = 0; side < 2; ++side) {
+      if (chosen[side] != kNone && !unroll(candidates_[chosen[side]], pair[side])) unusable = chosen[side];
+    }
+    if (unusable != kNone) {
+      drop(unusable);
+      continue;
+    }
+    if (chosen[0] != kNone && chosen[1] != kNone) {
+      const auto miss = [&](const Neighbour<D>& y) {
+        return y.gradient(k + 1) * y.position(k) - y.gradient(k) * y.position(k + 1);
+      };
+      const double miss_left = miss(pair[0]);
+      const double miss_right = miss(pair[1]);
+      const double t = miss_left / (miss_left - miss_right);
+      if (miss_left > miss_right && pair[0].along + t * (pair[1].along - pair[0].along) > 0) {
+        return between(pair[0], miss_left, pair[1], miss_right, first.source);
+      }
+    }
+    unroll_all();
+    return one_sided();
   }
-  if (left == nullptr || right == nullptr) return one_sided();
-  double t = miss_left / (miss_left - miss_right);
-  if (!(left->along + t * (right->along - left->along) > 0)) return one_sided();
+  return std::nullopt;
+}
 
-  const Vec edge = right->position - left->position;
+/// Fermat's principle on the segment z(t) between two neighbours: the least sqrt(2 v(t)) + |z(t)|.
+template <int D, int K>
+Arrival<D> ArrivalSolver<D, K>::between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right,
+                                        double miss_right, Index source) const {
+  const Vec edge = right.position - left.position;
   const double edge2 = edge.squaredNorm();
-  const double v0 = 0.5 * left->distance * left->distance;
-  const double rise = 0.5 * right->distance * right->distance - v0;
-  const double bend = 0.5 * (left->distance * left->gradient.dot(edge) - right->distance * right->gradient.dot(edge));
+  const double v0 = 0.5 * left.distance * left.distance;
+  const double rise = 0.5 * right.distance * right.distance - v0;
+  const double bend = 0.5 * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
   // The rays themselves give t to first order; two Newton steps on the distances settle the direction.
+  double t = std::clamp(miss_left / (miss_left - miss_right), 0.0, 1.0);
   constexpr int kSteps = 2;
   for (int step = 0;; ++step) {
-    const Vec z = left->position + t * edge;
+    const Vec z = left.position + t * edge;
     const double length = z.norm();
     const double u = std::sqrt(std::max(0.0, 2 * (v0 + t * rise + bend * t * (1 - t))));
-    if (step == kSteps || !(length > 0) || !(u > 0)) {
-      const Vec direction = length > 0 ? Vec(-z / length) : first.gradient;
-      return {u + length, frame_.lift(direction), true};
+    const double along = length > 0 ? z.dot(edge) / length : 0.0;
+    const double curvature = length > 0 ? (edge2 - along * along) / length : 0.0;  // of |z(t)|
+    if (step == kSteps || !(curvature > 0) || !(u > 0)) {
+      const Vec direction = length > 0 ? Vec(-z / length) : left.gradient;
+      return {u + length, frame_.lift(direction), true, source};
     }
-    const double along = z.dot(edge) / length;
-    const double curvature = (edge2 - along * along) / length;  // of |z(t)|
-    const double slope = (rise + bend * (1 - 2 * t)) / u;       // of sqrt(2 v(t))
+    const double slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
     const double second = curvature - (2 * bend + slope * slope) / u;
-    const double divisor = std::max(second, 0.5 * curvature);
-    if (!(divisor > 0)) return {u + length, frame_.lift(Vec(-z / length)), true};
-    t = std::clamp(t - (slope + along) / divisor, 0.0, 1.0);
+    t = std::clamp(t - (slope + along) / std::max(second, 0.5 * curvature), 0.0, 1.0);
   }
 }
 
-/// n >= 3. For a quadratic v the trapezoidal rule v(0) = v_i - (u_i g_i + U r) . z_i / 2 is exact for every neighbour,
-/// with U and r the distance and its unit gradient at x. Least squares over all neighbours of the branch, weighted to
-/// those behind x, by Gauss-Newton in U and r.
+/// n >= 3. For a quadratic v the trapezoidal rule v(0) = v_i - (u_i g_i + G) . z_i / 2 is exact for every neighbour i,
+/// with G = u r the gradient of v at x and, by the eikonal equation, v(0) = |G|^2 / 2. Least squares for G over all
+/// neighbours of the branch that lie behind x, by Gauss-Newton from the best single neighbour.
 template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
-  return one_sided();
+  const Index n = surface_dim();
+  const Neighbour<D>& first = best();
+  Vec gradient = first.distance * first.gradient - first.position;  // G; its length is the distance
+  const double start = gradient.norm();
+  if (!(start > 0)) return one_sided();
+  const Vec ray = gradient / start;
+  const auto weight = [&](const Neighbour<D>& y) {
+    const double behind = -y.position.dot(ray);
+    if (!(behind > 0) || y.gradient.dot(first.gradient) < kMinBranchCosine) return 0.0;
+    return behind * behind / (y.length * y.length * y.length * y.length);
+  };
+  double lower = 0;
+  double upper = std::numeric_limits<double>::infinity();
+  double sum = 0;
+  double spread = 0;
+  Vec side = Vec::Zero(d_);
+  for (const Neighbour<D>& y : neighbours_) {
+    const double w = weight(y);
+    if (!(w > 0)) continue;
+    const Vec across = y.position - y.position.dot(ray) * ray;
+    side += w * across;
+    spread += w * across.squaredNorm();
+    sum += w;
+    lower = std::max(lower, y.distance - y.length);
+    upper = std::min(upper, y.distance + y.length);
+  }
+  constexpr double kOneSided = 0.6;
+  if (!(side.squaredNorm() < kOneSided * spread * sum)) return one_sided();
+
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxMarchDim, kMaxMarchDim>;
+  using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxMarchDim, 1>;
+  // Keeps the directions that no neighbour tells about where they were.
+  constexpr double kRidge = 1e-3;
+  const double ridge = 0.25 * kRidge * spread / static_cast<double>(n);
+  constexpr int kSteps = 2;
+  for (int step = 0; step < kSteps; ++step) {
+    Matrix normal = ridge * Matrix::Identity(n, n);
+    Coordinates right = Coordinates::Zero(n);
+    const double v = 0.5 * gradient.squaredNorm();
+    for (const Neighbour<D>& y : neighbours_) {
+      const double w = weight(y);
+      if (!(w > 0)) continue;
+      const double residual =
+          v - 0.5 * y.distance * y.distance + 0.5 * (gradient + y.distance * y.gradient).dot(y.position);
+      const Coordinates row = (gradient + 0.5 * y.position).tail(n);
+      normal.template selfadjointView<Eigen::Lower>().rankUpdate(row, w);
+      right += w * residual * row;
+    }
+    const Eigen::LLT<Matrix> factor(normal);
+    if (factor.info() != Eigen::Success) return one_sided();
+    gradient.tail(n) -= factor.solve(right);
+  }
+  const double distance = gradient.norm();
+  if (!(distance > 0)) return one_sided();
+  return {std::clamp(distance, std::min(lower, upper), upper), frame_.lift(Vec(gradient / distance)), true,
+          first.source};
 }
 
 }  // namespace taut::detail

@@ -39,7 +39,7 @@ class AxisMarch {
     while (!front.empty() && !target_.is_final(front.min_key())) {
       const double distance = front.min_key();
       const Index i = growing_.pop();
-      growing_.settle(i, distance);
+      growing_.settle(i, distance, growing_.source(i));
       for (std::size_t a = 0; a < coordinates_.size(); ++a) {
         for (const int step : {-1, 1}) {
           const Index j = neighbour(i, a, step);

@@ -1,4 +1,6 @@
+#include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "march/arrival.hpp"
@@ -6,8 +8,8 @@
 #include "march/field_reader.hpp"
 #include "march/growing_field.hpp"
 #include "march/methods.hpp"
+#include "march/neighbour_index.hpp"
 #include "march/start.hpp"
-#include "march/stencil.hpp"
 #include "march/target_watch.hpp"
 
 namespace taut::detail {
@@ -27,7 +29,7 @@ class ConvergentMarch {
         target_(task, field),
         solver_(d_, k_),
         frame_(d_, k_),
-        neighbours_(static_cast<std::size_t>(block_size(d_)) - 1),
+        neighbours_(cells_),
         flags_(static_cast<std::size_t>(cells_.num_cells()), 0) {
     for (Index s = 0; s < field.sources.cols(); ++s) {
       for (const Index i : cells_around_source(cells_, field.sources.col(s))) offer_direct(i, s);
@@ -38,7 +40,10 @@ class ConvergentMarch {
     Front& front = field_.front();
     while (!front.empty() && !target_.is_final(front.min_key())) {
       const Index i = field_.pop();
-      flags_.resize(static_cast<std::size_t>(cells_.num_cells()), 0);
+      if (cells_.num_cells() > static_cast<Index>(flags_.size())) {
+        flags_.resize(static_cast<std::size_t>(cells_.num_cells()), 0);
+        neighbours_.update();
+      }
       if (visit(i)) target_.settled(cells_.grid().cell(i));
     }
     field_.finish(target_.distance());
@@ -60,37 +65,35 @@ class ConvergentMarch {
     const bool direct = is_direct(i);
     solver_.begin(point(i));
     waiting_.clear();
-    cells_.neighbours(i, neighbours_);
-    for (const Index j : neighbours_) {
-      if (j == CellGrid::kNone || !cells_.valid(j)) continue;
+    for (const Index j : neighbours_.around(i)) {
       if (!field_.settled(j)) {
-        waiting_.push_back(j);
+        if (j != i) waiting_.push_back(j);
       } else if (!direct) {
-        solver_.add(point(j), field_.distance(j), field_.gradient(j));
+        solver_.add(point(j), field_.distance(j), field_.gradient(j), field_.source(j));
       }
     }
     if (direct) {
-      const auto [length, direction] =
-          *direct_from_source<D, K>(field_.field(), field_.source(i), point(i), direct_radius_, frame_);
-      settle(i, length, direction);
-      for (const Index j : waiting_) offer_direct(j, field_.source(i));
+      const Index s = field_.source(i);
+      const auto [length, direction] = *direct_from_source<D, K>(field_.field(), s, point(i), direct_radius_, frame_);
+      settle(i, length, direction, s);
+      for (const Index j : waiting_) offer_direct(j, s);
     } else {
-      if (solver_.empty()) return false;
-      const Arrival<D> arrival = solver_.solve();
-      if (!arrival.enclosed && !is_delayed(i)) {
+      const std::optional<Arrival<D>> arrival = solver_.solve();
+      if (!arrival) return false;
+      if (!arrival->enclosed && !is_delayed(i)) {
         flags(i) |= kDelayed;
-        field_.front().put_back(i, arrival.distance);
+        field_.set(i, arrival->distance, arrival->source);
         return false;
       }
-      settle(i, arrival.distance, arrival.gradient);
+      settle(i, arrival->distance, arrival->gradient, arrival->source);
     }
     for (const Index j : waiting_) offer(j, i);
     return true;
   }
 
-  void settle(Index i, double distance, const SmallVector<D>& gradient) {
+  void settle(Index i, double distance, const SmallVector<D>& gradient, Index source) {
     Eigen::Map<SmallVector<D>>(field_.gradient(i), d_) = gradient;
-    field_.settle(i, distance);
+    field_.settle(i, distance, source);
   }
 
   /// Source s offers cell j its distance, when j is near enough.
@@ -107,15 +110,17 @@ class ConvergentMarch {
     flags(j) |= kDirect;
   }
 
-  /// Cell i, just settled, offers j what it makes of the distance there.
+  /// Cell i, just settled, offers j what it makes of the distance there. Whether an edge joins them is left to
+  /// visit(j).
   void offer(Index j, Index i) {
     const Index s = field_.source(i);
     if (is_direct(j) && field_.source(j) == s) return;
-    Edge<D> edge;
-    if (!make_edge<D, K>(point(i), point(j), d_, k_, edge)) return;
+    using Map = Eigen::Map<const SmallVector<D>>;
+    const SmallVector<D> chord = Map(cells_.point(j).data(), d_) - Map(cells_.point(i).data(), d_);
     const double u = field_.distance(i);
-    const double along = edge.length * edge.component(Eigen::Map<const SmallVector<D>>(field_.gradient(i), d_));
-    const double estimate = is_delayed(j) ? u + edge.length : circular_estimate(u, along, edge.length);
+    const double along = Map(field_.gradient(i), d_).dot(chord);
+    const double chord2 = chord.squaredNorm();
+    const double estimate = is_delayed(j) ? u + std::sqrt(chord2) : std::sqrt(circular_estimate2(u, along, chord2));
     if (field_.offer(j, estimate, s)) flags(j) &= static_cast<std::uint8_t>(~kDirect);
   }
 
@@ -127,7 +132,7 @@ class ConvergentMarch {
   TargetWatch<D, K> target_;
   ArrivalSolver<D, K> solver_;
   TangentFrame<D, K> frame_;
-  std::vector<Index> neighbours_;
+  NeighbourIndex<D> neighbours_;
   std::vector<Index> waiting_;
   std::vector<std::uint8_t> flags_;
 };

@@ -31,7 +31,7 @@ void run(const MarchTask& task, DistanceField& field) {
   while (!front.empty() && !target.is_final(front.min_key())) {
     const double distance = front.min_key();
     const Index i = growing.pop();
-    growing.settle(i, distance);
+    growing.settle(i, distance, growing.source(i));
     cells.neighbours(i, neighbours);
     for (const Index j : neighbours) {
       if (j == CellGrid::kNone || !cells.valid(j) || growing.settled(j)) continue;

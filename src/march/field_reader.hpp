@@ -77,16 +77,18 @@ class FieldReader {
     solver_.begin(x);
     std::int32_t tried = -1;
     for (const Index i : known_around(x.x)) {
-      solver_.add({cells_.point(i).data(), cells_.normals(i).data()}, field_.distance(i), &field_.gradient(0, i));
       const std::int32_t source = field_.nearest_source[static_cast<std::size_t>(i)];
+      solver_.add({cells_.point(i).data(), cells_.normals(i).data()}, field_.distance(i), &field_.gradient(0, i),
+                  source);
       if (source == tried) continue;
       tried = source;
       const auto direct = direct_from_source<D, K>(field_, source, x, kDirectCells * cells_.grid().size(), frame_);
       if (direct && !(reading && reading->arrival.distance <= direct->first)) {
-        reading = {{direct->first, direct->second, true}, source};
+        reading = {{direct->first, direct->second, true, source}, source};
       }
     }
-    if (!reading && !solver_.empty()) reading = {solver_.solve(), -1};
+    if (reading) return reading;
+    if (const auto arrival = solver_.solve()) reading = {*arrival, -1};
     return reading;
   }
 

@@ -12,41 +12,36 @@ namespace taut::detail {
 /// a key may go down and up. Equal keys leave in the order of their indices, which makes the march deterministic.
 class Front {
  public:
-  void resize(Index num_cells) { place_.resize(static_cast<std::size_t>(num_cells), kUnseen); }
+  void resize(Index num_cells) { place_.resize(static_cast<std::size_t>(num_cells), kOutside); }
 
   [[nodiscard]] bool empty() const { return heap_.empty(); }
   [[nodiscard]] double min_key() const {
     return heap_.empty() ? std::numeric_limits<double>::infinity() : heap_.front().key;
   }
-  [[nodiscard]] bool accepted(Index cell) const { return place_[static_cast<std::size_t>(cell)] == kAccepted; }
-  [[nodiscard]] bool contains(Index cell) const { return place_[static_cast<std::size_t>(cell)] < kAccepted; }
+  [[nodiscard]] bool contains(Index cell) const { return place_[static_cast<std::size_t>(cell)] != kOutside; }
 
   /// Of a cell it contains.
   [[nodiscard]] double key(Index cell) const { return heap_[place_[static_cast<std::size_t>(cell)]].key; }
 
-  /// Adds the cell, or gives it a new key. Not for accepted cells.
+  /// Adds the cell, or gives it a new key.
   void set(Index cell, double key) {
     const Entry entry{key, static_cast<std::uint32_t>(cell)};
     std::uint32_t hole = place_[entry.cell];
-    if (hole == kUnseen) {
+    if (hole == kOutside) {
       hole = static_cast<std::uint32_t>(heap_.size());
       heap_.push_back(entry);
     }
     rise(sink(hole, entry), entry);
   }
 
-  /// Takes out the cell with the least key. It counts as accepted, unless it is set again with `put_back`.
+  /// Takes out the cell with the least key.
   Index pop() {
     const Entry first = heap_.front();
     const Entry last = heap_.back();
     heap_.pop_back();
     if (!heap_.empty()) rise(sink(0, last), last);
-    place_[first.cell] = kAccepted;
+    place_[first.cell] = kOutside;
     return first.cell;
-  }
-  void put_back(Index cell, double key) {
-    place_[static_cast<std::size_t>(cell)] = kUnseen;
-    set(cell, key);
   }
 
  private:
@@ -57,8 +52,7 @@ class Front {
       return key < other.key || (key == other.key && cell < other.cell);
     }
   };
-  static constexpr std::uint32_t kUnseen = 0xffffffff;
-  static constexpr std::uint32_t kAccepted = 0xfffffffe;
+  static constexpr std::uint32_t kOutside = 0xffffffff;
 
   void put(std::uint32_t hole, const Entry& entry) {
     heap_[hole] = entry;
@@ -92,7 +86,7 @@ class Front {
   }
 
   std::vector<Entry> heap_;
-  std::vector<std::uint32_t> place_;  // position in heap_, or kUnseen, kAccepted
+  std::vector<std::uint32_t> place_;  // position in heap_, or kOutside
 };
 
 }  // namespace taut::detail

@@ -22,8 +22,9 @@ Index GrowingField::pop() {
   return i;
 }
 
-void GrowingField::settle(Index i, double distance) {
+void GrowingField::settle(Index i, double distance, Index source) {
   field_.distance(i) = distance;
+  field_.nearest_source[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(source);
   constexpr Index kCellsPerReport = 4096;  // a few milliseconds
   if (++field_.num_reached % kCellsPerReport != 0) return;
   task_.context.check_cancelled();

@@ -37,8 +37,8 @@ class GrowingField {
   }
   /// Takes the first cell out of the front, and grows its neighbours where the cells are lazy.
   Index pop();
-  /// Fixes the distance at a cell that was taken out.
-  void settle(Index i, double distance);
+  /// Fixes the distance at a cell that was taken out, and which source it is from.
+  void settle(Index i, double distance, Index source);
   /// To be called last: leaves nothing unsettled in the field.
   void finish(double target_distance);
 
