@@ -21,6 +21,7 @@ struct CsvRows::State {
   std::string buffer;    // the part of the file that lies in memory
   std::size_t next = 0;  // first byte of `buffer` not handed out yet
   std::size_t line = 0;  // number of the last line handed out
+  bool header_passed = false;
   bool separator_known = false;
   detail::RowParser parser;
 
@@ -115,9 +116,12 @@ bool CsvRows::next(CsvRow& row) {
   while (state.next_line(line)) {
     line = stripped(line);
     if (line.empty()) continue;
-    if (!std::exchange(state.separator_known, true)) {
+    if (!state.separator_known) {
       state.parser.choose_separator(line);
-      if (detail::is_header(state.parser.split(line))) continue;
+      const std::vector<std::string_view> fields = state.parser.split(line);
+      const bool is_header = !std::exchange(state.header_passed, true) && detail::is_header(fields);
+      state.separator_known = !is_header || fields.size() > 1;  // a single word shows no separator
+      if (is_header) continue;
     }
     row.line = state.line;
     row.values.clear();

@@ -33,6 +33,8 @@ TEST(CsvRows, LinesKeepTheirNumbers) {
 TEST(CsvRows, HeaderAndByteOrderMarkAreSkipped) {
   EXPECT_EQ(rows_of("\xEF\xBB\xBFpx,py\n1,2\n").size(), 1U);
   EXPECT_EQ(rows_of("1 2\n").size(), 1U);
+  EXPECT_EQ(rows_of("pairs\n1,2\n").front().values, (std::vector<double>{1, 2}));
+  EXPECT_NE(rows_of("pairs\nmore\n1,2\n").front().problem, "");  // one line of names, not two
   EXPECT_EQ(rows_of("").size(), 0U);
 }
 
