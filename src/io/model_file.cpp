@@ -1,0 +1,192 @@
+#include "taut/io/model_file.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "core/whole_file.hpp"
+#include "io/input_file.hpp"
+#include "taut/core/error.hpp"
+
+// The format, all numbers little-endian, a real as its 64 IEEE bits, an integer in 64 bits:
+//   "taut model 1\n"
+//   kernel (0 cubic, 1 quintic)
+//   centres, weights, polynomial, origin: each rows, columns, then the entries column by column
+//   scale, support radius
+//   samples: points, normals as above, faces with integers
+//   report: two integers, seven reals
+//   checksum: FNV-1a (64 bit) of everything before it
+
+namespace taut {
+namespace {
+
+constexpr std::string_view kMagic = "taut model ";
+constexpr std::string_view kVersion = "1\n";
+
+std::uint64_t checksum(std::string_view bytes) {
+  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001B3ULL;
+  return hash;
+}
+
+class ModelWriter {
+ public:
+  ModelWriter() : bytes_(kMagic) { bytes_ += kVersion; }
+
+  void integer(Index value) { word(static_cast<std::uint64_t>(value)); }
+  void real(double value) { word(std::bit_cast<std::uint64_t>(value)); }
+  template <class Matrix>
+  void matrix(const Matrix& matrix) {
+    integer(matrix.rows());
+    integer(matrix.cols());
+    for (Index j = 0; j < matrix.cols(); ++j) {
+      for (Index i = 0; i < matrix.rows(); ++i) entry(matrix(i, j));
+    }
+  }
+  std::string finish() {
+    word(checksum(bytes_));
+    return std::move(bytes_);
+  }
+
+ private:
+  void entry(double value) { real(value); }
+  void entry(int value) { integer(value); }
+  void word(std::uint64_t value) {
+    for (int byte = 0; byte < 8; ++byte) bytes_ += static_cast<char>(value >> (8 * byte) & 0xFF);
+  }
+
+  std::string bytes_;
+};
+
+class ModelReader {
+ public:
+  explicit ModelReader(const detail::InputFile& file) : file_(file), rest_(file.bytes) {
+    if (!rest_.starts_with(kMagic)) file_.fail("is not a model that taut fit wrote");
+    rest_.remove_prefix(kMagic.size());
+    if (!rest_.starts_with(kVersion)) {
+      file_.fail("has model version " + detail::quote(rest_.substr(0, rest_.find('\n'))) +
+                 ": this program reads version 1");
+    }
+    rest_.remove_prefix(kVersion.size());
+    constexpr std::size_t kWord = 8;
+    if (rest_.size() < kWord) file_.fail("is cut short");
+    const std::string_view covered(file.bytes.data(), file.bytes.size() - kWord);
+    std::string_view last = std::string_view(file.bytes).substr(covered.size());
+    if (take_word(last) != checksum(covered)) file_.fail("is damaged or cut short: its checksum does not fit");
+    rest_.remove_suffix(kWord);
+  }
+
+  Index integer() {
+    const auto value = static_cast<std::int64_t>(word());
+    // No count in a model is negative or anywhere near this.
+    if (value < 0 || value > std::int64_t{1} << 40) file_.fail("is damaged: a count is " + std::to_string(value));
+    return static_cast<Index>(value);
+  }
+  double real() { return std::bit_cast<double>(word()); }
+  template <class Matrix>
+  Matrix matrix() {
+    const Index rows = integer();
+    const Index cols = integer();
+    const auto left = static_cast<Index>(rest_.size() / 8);
+    if (cols > 0 && rows > left / cols) file_.fail("is damaged: a table is larger than the file");
+    const bool fits = (Matrix::RowsAtCompileTime == Eigen::Dynamic || Matrix::RowsAtCompileTime == rows) &&
+                      (Matrix::ColsAtCompileTime == Eigen::Dynamic || Matrix::ColsAtCompileTime == cols);
+    if (!fits) file_.fail("is damaged: a table has the wrong shape");
+    Matrix result(rows, cols);
+    for (auto& entry : result.reshaped()) read(entry);
+    return result;
+  }
+  void finish() const {
+    if (!rest_.empty()) file_.fail("is damaged: there is more in it than a model");
+  }
+
+ private:
+  void read(double& value) { value = real(); }
+  void read(int& value) { value = static_cast<int>(integer()); }
+  std::uint64_t word() {
+    if (rest_.size() < 8) file_.fail("is damaged: it ends too early");
+    return take_word(rest_);
+  }
+  static std::uint64_t take_word(std::string_view& from) {
+    std::uint64_t value = 0;
+    for (std::size_t byte = 0; byte < 8; ++byte) {
+      value |= std::uint64_t{static_cast<unsigned char>(from[byte])} << (8 * byte);
+    }
+    from.remove_prefix(8);
+    return value;
+  }
+
+  const detail::InputFile& file_;
+  std::string_view rest_;
+};
+
+void require_sound(const RbfModel& model, const detail::InputFile& file) {
+  const Index d = model.origin.size();
+  const PointCloud& samples = model.samples;
+  const bool shapes = d >= 2 && model.centres.rows() == d && samples.points.rows() == d &&
+                      samples.normals.rows() == d &&
+                      (samples.normals.cols() == 0 || samples.normals.cols() == samples.points.cols()) &&
+                      model.weights.size() == model.centres.cols();
+  const bool values = model.centres.allFinite() && model.weights.allFinite() && model.polynomial.allFinite() &&
+                      model.origin.allFinite() && model.scale > 0 && std::isfinite(model.scale) &&
+                      model.support_radius >= 0 && samples.points.allFinite();
+  const bool faces = samples.faces.size() == 0 || samples.faces.maxCoeff() < samples.points.cols();
+  if (!shapes || !values || !faces) file.fail("is damaged: its parts do not fit together");
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& path, const RbfModel& model) {
+  ModelWriter out;
+  out.integer(model.kernel == RbfKernel::quintic ? 1 : 0);
+  out.matrix(model.centres);
+  out.matrix(model.weights);
+  out.matrix(model.polynomial);
+  out.matrix(model.origin);
+  out.real(model.scale);
+  out.real(model.support_radius);
+  out.matrix(model.samples.points);
+  out.matrix(model.samples.normals);
+  out.matrix(model.samples.faces);
+  const RbfReport& report = model.report;
+  out.integer(report.num_samples);
+  out.integer(report.num_fitted);
+  for (const double value : {report.spacing, report.noise, report.smoothing, report.offset, report.residual,
+                             report.left_out_rms, report.left_out_max}) {
+    out.real(value);
+  }
+  detail::write_whole_file(path.string(), out.finish());
+}
+
+RbfModel read_model(const std::filesystem::path& path, const Context& context) {
+  const detail::InputFile file = detail::read_file(path, context);
+  ModelReader in(file);
+  RbfModel model;
+  const Index kernel = in.integer();
+  if (kernel > 1) file.fail("is damaged: it names kernel " + std::to_string(kernel));
+  model.kernel = kernel == 1 ? RbfKernel::quintic : RbfKernel::cubic;
+  model.centres = in.matrix<Points>();
+  model.weights = in.matrix<Vector>();
+  model.polynomial = in.matrix<Vector>();
+  model.origin = in.matrix<Vector>();
+  model.scale = in.real();
+  model.support_radius = in.real();
+  model.samples.points = in.matrix<Points>();
+  model.samples.normals = in.matrix<Points>();
+  model.samples.faces = in.matrix<Eigen::Matrix3Xi>();
+  RbfReport& report = model.report;
+  report.num_samples = in.integer();
+  report.num_fitted = in.integer();
+  for (double* value : {&report.spacing, &report.noise, &report.smoothing, &report.offset, &report.residual,
+                        &report.left_out_rms, &report.left_out_max}) {
+    *value = in.real();
+  }
+  in.finish();
+  require_sound(model, file);
+  return model;
+}
+
+}  // namespace taut
