@@ -1,5 +1,6 @@
 #include "surface/rbf/cloud_geometry.hpp"
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -100,6 +101,44 @@ Vector local_spacing(const Points& points, const KdTree& tree, Index neighbours)
     spacing(i) = std::sqrt(found.back().squared_distance) * std::pow(unit_ball_volume(m) / k, 1 / m);
   }
   return spacing;
+}
+
+double relative_noise(const Points& points, const Points& normals, const KdTree& tree) {
+  const Index d = points.rows();
+  const Index m = d - 1;
+  const Index unknowns = 1 + m + m * (m + 1) / 2;
+  const Index neighbours = 4 * unknowns;
+  if (d > 5 || points.cols() < 2 * neighbours) return 0;
+  constexpr Index kMaxProbes = 1000;
+  const Index num_probes = std::min(points.cols(), kMaxProbes);
+  Vector ratio(num_probes);
+  Eigen::MatrixXd terms(neighbours, unknowns);
+  Vector height(neighbours);
+  std::vector<Neighbour> found;
+  for (Index probe = 0; probe < num_probes; ++probe) {
+    const Index i = probe * points.cols() / num_probes;
+    const Vector normal = normals.col(i);
+    const Eigen::MatrixXd frame = Eigen::HouseholderQR<Eigen::MatrixXd>(normal).householderQ();
+    tree.nearest(points.col(i).data(), neighbours, found);
+    const double radius = std::sqrt(found.back().squared_distance);
+    for (Index row = 0; row < neighbours; ++row) {
+      const Vector u = (points.col(found[static_cast<std::size_t>(row)].index) - points.col(i)) / radius;
+      const Vector t = frame.rightCols(m).transpose() * u;
+      height(row) = normal.dot(u);
+      terms(row, 0) = 1;
+      terms.row(row).segment(1, m) = t.transpose();
+      for (Index a = 0, column = 1 + m; a < m; ++a) {
+        for (Index b = 0; b <= a; ++b, ++column) terms(row, column) = t(a) * t(b);
+      }
+    }
+    const Vector fit = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(height);
+    const double deviation =
+        std::sqrt((terms * fit - height).squaredNorm() / static_cast<double>(neighbours - unknowns));
+    // radius = 1 here, so the spacing is that of `neighbours` points in a unit ball.
+    ratio(probe) = deviation / std::pow(unit_ball_volume(static_cast<double>(m)) / static_cast<double>(neighbours),
+                                        1 / static_cast<double>(m));
+  }
+  return quantile(ratio, 0.1);
 }
 
 double quantile(const Vector& values, double q) {

@@ -27,6 +27,11 @@ struct MergedPoints {
 /// the (d - 1)-cube that one sample stands for. n.
 [[nodiscard]] Vector local_spacing(const Points& points, const KdTree& tree, Index neighbours = 8);
 
+/// Standard deviation of the points along the normal about the quadrics that fit their neighbourhoods best, as a
+/// multiple of the local spacing: its 10 % quantile, since noise is everywhere but unresolved features are not. 0 where
+/// there are too few points for quadrics (or d > 5). `normals`: unit.
+[[nodiscard]] double relative_noise(const Points& points, const Points& normals, const KdTree& tree);
+
 /// The q-quantile, 0 <= q <= 1, of the finite entries; 0 of none.
 [[nodiscard]] double quantile(const Vector& values, double q);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "surface/describe.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
 #include "surface/rbf/off_surface.hpp"
@@ -48,6 +49,34 @@ double ridge_for(double length, double spacing, RbfKernel kernel, Index d) {
   return transform / std::pow(spacing, m);
 }
 
+/// Smoothing length, in spacings, for samples with this noise, in spacings. Measured on a torus of tube radius 4 to 6
+/// spacings: 0.1 of noise turns the normals of an interpolant by 0.22 (rms), of this fit by 0.03.
+double smoothing_for(double noise) {
+  constexpr double kClean = 0.06;  // real scans that are clean at their own spacing reach 0.05
+  return noise < kClean ? 0 : std::min(4 + 10 * noise, 7.0);
+}
+
+/// |F| / |grad F| at the points that are not among the `chosen` (ascending).
+void measure_left_out(const Points& points, const std::vector<Index>& chosen, RbfModel& model, const Context& context) {
+  std::vector<Index> left_out;
+  for (Index i = 0; i < points.cols(); ++i) {
+    if (!std::binary_search(chosen.begin(), chosen.end(), i)) left_out.push_back(i);
+  }
+  if (left_out.empty()) return;
+  const detail::RbfFunction function(model);
+  Vector miss(static_cast<Index>(left_out.size()));
+  detail::parallel_for(context, 0, miss.size(), 64, [&](Index first, Index last) {
+    Vector gradient(points.rows());
+    for (Index i = first; i < last; ++i) {
+      double value = 0;
+      function.evaluate(points.col(left_out[static_cast<std::size_t>(i)]).data(), &value, gradient.data(), nullptr);
+      miss(i) = std::abs(value) / gradient.norm();
+    }
+  });
+  model.report.left_out_max = miss.maxCoeff();
+  model.report.left_out_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
+}
+
 }  // namespace
 
 RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Context& context) {
@@ -88,7 +117,17 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
   const KdTree fitted_tree(fitted);
   const double spacing = detail::quantile(detail::local_spacing(fitted, fitted_tree), 0.5);
   const double offset = options.offset > 0 ? options.offset / model.scale : 0.5 * spacing;
-  const double smoothing = options.smoothing.value_or(0) / model.scale;
+  // Meshes are taken at their word: what looks like noise on a coarse one is unresolved shape.
+  const bool may_be_noisy = cloud.faces.cols() == 0;
+  const double noise = may_be_noisy ? detail::relative_noise(unit, normals, tree) *
+                                          detail::quantile(detail::local_spacing(unit, tree), 0.5)
+                                    : 0;
+  const double smoothing =
+      options.smoothing ? *options.smoothing / model.scale : smoothing_for(noise / spacing) * spacing;
+  if (!options.smoothing && smoothing > 0) {
+    context.tell("the samples are noisy (by " + detail::describe(noise * model.scale) + "): bumps shorter than " +
+                 detail::describe(smoothing * model.scale) + " are smoothed");
+  }
   // On a flat sheet two layers of constraints are a quadric, which leaves a polynomial of degree 2 open.
   const bool both_sides = options.both_sides || options.kernel == RbfKernel::quintic;
   const detail::Constraints constraints =
@@ -101,6 +140,7 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
   model.polynomial = std::move(solution.polynomial);
   model.report.num_fitted = fitted.cols();
   model.report.spacing = spacing * model.scale;
+  model.report.noise = noise * model.scale;
   model.report.offset = offset * model.scale;
   model.report.smoothing = smoothing * model.scale;
   model.report.residual = solution.residual * model.scale;
@@ -111,18 +151,7 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
     model.support_radius = model.scale * detail::default_support_radius(unit, normals, tree);
   }
 
-  const detail::RbfFunction function(model);
-  Vector miss(model.samples.size());
-  detail::parallel_for(context, 0, miss.size(), 64, [&](Index first, Index last) {
-    Vector gradient(d);
-    for (Index i = first; i < last; ++i) {
-      double value = 0;
-      function.evaluate(cloud.points.col(i).data(), &value, gradient.data(), nullptr);
-      miss(i) = std::abs(value) / gradient.norm();
-    }
-  });
-  model.report.left_out_max = miss.maxCoeff();
-  model.report.left_out_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
+  measure_left_out(merged.points, chosen, model, context);
   return model;
 }
 
