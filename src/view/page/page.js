@@ -737,9 +737,7 @@
   }
 
   function showStill(reason) {
-    canvas.hidden = true;
-    tools.hidden = true;
-    document.getElementById("keys").hidden = true;
+    for (const id of ["view", "tools", "labels", "keys"]) document.getElementById(id).hidden = true;
     document.getElementById("still").style.display = "block";
     const message = document.getElementById("message");
     message.hidden = false;
