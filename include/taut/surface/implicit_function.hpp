@@ -43,7 +43,8 @@ class Evaluator {
   /// forms it. `v`, `out`: d x n. Uses batch.x, batch.weight and batch.n only.
   virtual void hessian_times(const PointBatch& batch, const double* v, double* out);
 
-  /// Outward-rounded bounds of F over boxes. Returns false (and writes nothing) when the function has none.
+  /// Outward-rounded bounds of F over boxes. Returns false (and writes nothing) when the function has none. Both bounds
+  /// of F_i are NaN where F_i is NaN all over the box: no zero can lie there.
   virtual bool bounds(const BoxBatch& batch);
 
  protected:
