@@ -75,3 +75,5 @@ BENCHMARK(evaluate)->Args({1000, 0})->Args({1000, 1})->Unit(benchmark::kMicrosec
 
 }  // namespace
 }  // namespace taut
+
+BENCHMARK_MAIN();
