@@ -1,0 +1,140 @@
+// taut field: distances from sources to everywhere, or to given points.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "load_surface.hpp"
+#include "output.hpp"
+#include "points_argument.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/io/read_points.hpp"
+#include "taut/query/field.hpp"
+#include "taut/query/path.hpp"
+
+namespace taut::app {
+namespace {
+
+struct FieldArguments {
+  CommonArguments common;
+  SurfaceArguments surface;
+  std::vector<std::string> from;
+  std::string at;
+  FieldOptions options;
+  double tolerance = 1e-9;
+  std::vector<std::string> out;
+};
+
+Points parse_sources(const std::vector<std::string>& texts, const Surface& surface) {
+  Points sources(surface.dim(), static_cast<Index>(texts.size()));
+  for (std::size_t j = 0; j < texts.size(); ++j) {
+    sources.col(static_cast<Index>(j)) = parse_point(texts[j], "--from", surface);
+  }
+  return sources;
+}
+
+/// Exact distances at given points: a corrected path each, the shortest over the sources.
+ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, const Points& sources,
+                      const Context& context) {
+  const Points at = read_points(arguments.at, surface.dim());
+  PathSolver solver(surface,
+                    {.march = arguments.options.march,
+                     .grid = arguments.options.grid,
+                     .cell = arguments.options.cell,
+                     .tolerance = arguments.tolerance},
+                    context);
+  std::vector<PathResult> best;
+  for (Index s = 0; s < sources.cols(); ++s) {
+    std::vector<PathResult> found = solver.solve_from(sources.col(s), at);
+    if (best.empty()) {
+      best = std::move(found);
+      continue;
+    }
+    for (std::size_t j = 0; j < best.size(); ++j) {
+      const bool better =
+          found[j].status == Status::ok && (best[j].status != Status::ok || found[j].length < best[j].length);
+      if (better) best[j] = std::move(found[j]);
+    }
+  }
+  clear_progress();
+  bool all_ok = true;
+  for (const PathResult& result : best) {
+    all_ok = all_ok && result.status == Status::ok;
+    if (result.points.cols() > 0) {
+      std::cout << fmt::format("{},{}\n", result.length, result.length_error);
+    } else {
+      std::cout << "nan,inf\n";
+    }
+  }
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+ExitCode run(const FieldArguments& arguments) {
+  if (arguments.at.empty() == arguments.out.empty()) {
+    throw UsageError(
+        "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
+  }
+  check_outputs(arguments.out, OutputKind::mesh);
+  const Context context = terminal_context(arguments.common.terminal);
+  const Surface surface = load_surface(arguments.surface, context);
+  const Points sources = parse_sources(arguments.from, surface);
+  if (!arguments.at.empty()) return distances_at(arguments, surface, sources, context);
+  if (surface.dim() != 3 || surface.codim() != 1) {
+    throw InvalidArgument(
+        fmt::format("a field is drawn on surfaces in 3 dimensions, this one lies in {} with {} "
+                    "equation(s); use --at POINTS.csv",
+                    surface.dim(), surface.codim()));
+  }
+  const FieldResult field = marched_field(surface, sources, arguments.options, context);
+  clear_progress();
+  const Vector& distance = field.mesh.scalars.front().values;
+  Index reached = 0;
+  double farthest = 0;
+  for (const double u : distance) {
+    if (!std::isfinite(u)) continue;
+    ++reached;
+    farthest = std::max(farthest, u);
+  }
+  const std::vector<SceneFact> facts = {
+      {"cells", fmt::format("{} of size {:.4g}", grouped(field.num_cells), field.cell)},
+      {"reached", fmt::format("{} of {} vertices", grouped(reached), grouped(distance.size()))},
+      {"farthest", fmt::format("{:.6g}", farthest)}};
+  write_mesh_files(arguments.out, {.surface = surface,
+                                   .mesh = field.mesh,
+                                   .marks = sources,
+                                   .facts = facts,
+                                   .title = "Distances on " + arguments.surface.surface});
+  std::cout << facts_text(facts);
+  return kDone;
+}
+
+}  // namespace
+
+Run add_field_command(CLI::App& app) {
+  auto arguments = std::make_shared<FieldArguments>();
+  CLI::App& command = *app.add_subcommand("field", "distances from a source to everywhere");
+  arguments->surface.add_to(command);
+  command.add_option("--from", arguments->from, "a source: 1,0,0 or @17 (repeatable: the nearest one counts)")
+      ->required()
+      ->allow_extra_args(false);
+  command.add_option("--at", arguments->at, "points, one a line: writes distance,error for each, exact to --tol");
+  command
+      .add_option("--out", arguments->out,
+                  "the surface with marched distances, to FILE by extension: " + known_outputs(OutputKind::mesh))
+      ->allow_extra_args(false);
+  command.add_option("--tol", arguments->tolerance, "relative tolerance of distances --at points")
+      ->check(CLI::Range(1e-13, 1e-3))
+      ->capture_default_str();
+  command.add_option("--cell", arguments->options.cell, "grid cell size (default: chosen)")->check(CLI::PositiveNumber);
+  command.add_option("--march", arguments->options.march, "convergent, axis (the paper's) or dijkstra")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, MarchMethod>{
+          {"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+  arguments->common.add_to(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace taut::app

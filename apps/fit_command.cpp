@@ -1,0 +1,65 @@
+// taut fit: a point cloud becomes a surface file that the other commands read at once.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "load_surface.hpp"
+#include "points_argument.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/io/model_file.hpp"
+#include "taut/io/read_point_cloud.hpp"
+
+namespace taut::app {
+namespace {
+
+struct FitArguments {
+  CommonArguments common;
+  std::string cloud;
+  RbfOptions options;
+  std::string out;
+};
+
+ExitCode run(const FitArguments& arguments) {
+  if (!arguments.out.ends_with(".taut")) {
+    throw UsageError("--out " + arguments.out + ": a model file ends in .taut");
+  }
+  const Context context = terminal_context(arguments.common.terminal);
+  const PointCloud cloud = read_point_cloud(arguments.cloud, context);
+  const RbfModel model = fit_rbf(cloud, arguments.options, context);
+  write_model(arguments.out, model);
+  clear_progress();
+  const RbfReport& report = model.report;
+  std::vector<SceneFact> facts = {
+      {"samples", fmt::format("{}, {} of them fitted {:.3g} apart", grouped(model.samples.size()),
+                              grouped(report.num_fitted), report.spacing)},
+      {"centres", grouped(model.centres.cols())},
+      {"noise", fmt::format("{:.2e}, smoothing length {:.3g}", report.noise, report.smoothing)}};
+  if (report.num_fitted < report.num_samples) {
+    facts.push_back({"left out", fmt::format("samples lie {:.2e} (rms), {:.2e} (most) off the surface",
+                                             report.left_out_rms, report.left_out_max)});
+  }
+  facts.push_back({"ends", model.support_radius > 0 ? fmt::format("{:.3g} from the samples", model.support_radius)
+                                                    : std::string("nowhere: the surface is closed")});
+  std::cout << facts_text(facts);
+  return kDone;
+}
+
+}  // namespace
+
+Run add_fit_command(CLI::App& app) {
+  auto arguments = std::make_shared<FitArguments>();
+  CLI::App& command = *app.add_subcommand("fit", "fit a surface to a point cloud and keep it in a file");
+  command.add_option("CLOUD", arguments->cloud, "points: .ply .obj .off .stl .xyz .pts .pwn .pcd .csv .npy")
+      ->required();
+  command.add_option("--out", arguments->out, "the model, a .taut file")->required();
+  add_fit_options(command, arguments->options);
+  arguments->common.add_to(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace taut::app

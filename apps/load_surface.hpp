@@ -1,0 +1,35 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "taut/core/context.hpp"
+#include "taut/surface/rbf.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut::app {
+
+/// SURFACE and the options that say what it is; every command has them.
+struct SurfaceArguments {
+  std::string surface;
+  std::optional<Index> dim;
+  std::vector<std::string> parameters;
+  std::vector<std::string> domain;
+  std::string box;
+  RbfOptions rbf;
+
+  void add_to(CLI::App& command);
+};
+
+/// --smooth, --samples-max and --support: how a cloud is fitted.
+void add_fit_options(CLI::App& command, RbfOptions& options);
+
+/// The surface, from a formula, a point cloud (fitted) or a `.taut` model. Throws what the readers throw.
+[[nodiscard]] Surface load_surface(const SurfaceArguments& arguments, const Context& context);
+
+/// True when SURFACE names a file rather than spelling a formula.
+[[nodiscard]] bool names_a_file(const std::string& surface);
+
+}  // namespace taut::app

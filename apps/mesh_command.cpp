@@ -1,0 +1,57 @@
+// taut mesh: the surface as triangles, for pictures and for other programs.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "commands.hpp"
+#include "load_surface.hpp"
+#include "output.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/query/surface_mesh.hpp"
+
+namespace taut::app {
+namespace {
+
+struct MeshArguments {
+  CommonArguments common;
+  SurfaceArguments surface;
+  double cell = 0;
+  std::vector<std::string> out;
+};
+
+ExitCode run(const MeshArguments& arguments) {
+  check_outputs(arguments.out, OutputKind::mesh);
+  const Context context = terminal_context(arguments.common.terminal);
+  const Surface surface = load_surface(arguments.surface, context);
+  const SurfaceMesh mesh = display_mesh(surface, {.cell = arguments.cell}, context);
+  clear_progress();
+  const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
+                                        {"triangles", grouped(mesh.faces.cols())}};
+  write_mesh_files(arguments.out,
+                   {.surface = surface, .mesh = mesh, .marks = {}, .facts = facts, .title = arguments.surface.surface});
+  std::cout << facts_text(facts);
+  return kDone;
+}
+
+}  // namespace
+
+Run add_mesh_command(CLI::App& app) {
+  auto arguments = std::make_shared<MeshArguments>();
+  CLI::App& command = *app.add_subcommand("mesh", "triangles on the surface, every vertex exact");
+  arguments->surface.add_to(command);
+  command.add_option("--cell", arguments->cell, "grid cell size: about the length of an edge (default: chosen)")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--out", arguments->out,
+                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::mesh))
+      ->required()
+      ->allow_extra_args(false);
+  arguments->common.add_to(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace taut::app

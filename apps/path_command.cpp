@@ -1,0 +1,217 @@
+// taut path: one pair, one source to many destinations, or many pairs.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <iostream>
+#include <limits>
+#include <memory>
+
+#include "commands.hpp"
+#include "load_surface.hpp"
+#include "output.hpp"
+#include "points_argument.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/io/csv_rows.hpp"
+#include "taut/query/path.hpp"
+
+namespace taut::app {
+namespace {
+
+struct PathArguments {
+  CommonArguments common;
+  SurfaceArguments surface;
+  std::string from;
+  std::string to;
+  std::string to_file;
+  std::string pairs;
+  PathOptions options;
+  std::vector<std::string> out;
+  bool json = false;
+};
+
+class Timer {
+ public:
+  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
+                 const Timer& timer) {
+  PathSolver solver(surface, arguments.options, context);
+  const Vector p = parse_point(arguments.from, "--from", surface);
+  const Vector q = parse_point(arguments.to, "--to", surface);
+  const PathResult result = solver.solve(p, q);
+  clear_progress();
+  const double total = timer.seconds();
+  const auto json = path_json(surface, result, arguments.options, surface_seconds, total);
+  const std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  if (arguments.json) {
+    std::cout << json.dump() << "\n";
+  } else {
+    std::cout << facts_text(facts);
+  }
+  if (result.points.cols() > 0) {
+    write_paths(
+        arguments.out,
+        {.surface = surface, .paths = {&result}, .json = json, .facts = facts, .title = arguments.surface.surface},
+        context);
+  } else {
+    print_error(result.message);
+    return exit_code(result.status);
+  }
+  if (result.status != Status::ok) print_error(fmt::format("{}: {}", to_string(result.status), result.message));
+  return exit_code(result.status);
+}
+
+/// The points of a file, a line each; a bad line becomes a column of NaN, which its path then reports.
+Points read_targets(const std::string& file, Index dim) {
+  CsvRows rows(file);
+  std::vector<Vector> columns;
+  for (CsvRow row; rows.next(row);) {
+    const bool good = row.problem.empty() && static_cast<Index>(row.values.size()) == dim;
+    if (!good) {
+      print_error(fmt::format(
+          "{} line {}: {}", file, row.line,
+          row.problem.empty() ? fmt::format("{} numbers; a point takes {}", row.values.size(), dim) : row.problem));
+    }
+    columns.push_back(good ? Vector(Eigen::Map<const Vector>(row.values.data(), dim))
+                           : Vector::Constant(dim, std::numeric_limits<double>::quiet_NaN()));
+  }
+  Points points(dim, static_cast<Index>(columns.size()));
+  for (std::size_t j = 0; j < columns.size(); ++j) points.col(static_cast<Index>(j)) = columns[j];
+  return points;
+}
+
+ExitCode run_many(const PathArguments& arguments, const Surface& surface, const Context& context,
+                  double surface_seconds, const Timer& timer) {
+  PathSolver solver(surface, arguments.options, context);
+  const Vector p = parse_point(arguments.from, "--from", surface);
+  const Points targets = read_targets(arguments.to_file, surface.dim());
+  const std::vector<PathResult> results = solver.solve_from(p, targets);
+  clear_progress();
+  const double total = timer.seconds();
+  bool all_ok = true;
+  std::vector<const PathResult*> drawn;
+  auto json = nlohmann::ordered_json::array();
+  std::string csv;
+  for (const PathResult& result : results) {
+    if (result.status != Status::ok) {
+      all_ok = false;
+      print_error(fmt::format("path {}: {}", &result - results.data() + 1, result.message));
+    }
+    if (result.points.cols() > 0) drawn.push_back(&result);
+    json.push_back(path_json(surface, result, arguments.options, surface_seconds, total));
+    csv += path_csv(result) + "\n";
+  }
+  if (arguments.json) {
+    std::cout << json.dump() << "\n";
+  } else {
+    std::cout << csv;
+  }
+  const std::vector<SceneFact> facts = {{"paths", std::to_string(results.size())},
+                                        {"time", fmt::format("{:.3g} s", total)}};
+  write_paths(arguments.out,
+              {.surface = surface, .paths = drawn, .json = json, .facts = facts, .title = arguments.surface.surface},
+              context);
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+/// Line k in, line k out; a failed line carries its reason and the rest goes on.
+ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const Context& context) {
+  const Index d = surface.dim();
+  CsvRows rows(arguments.pairs);
+  PathSolver solver(surface, arguments.options, context);
+  bool all_ok = true;
+  Index count = 0;
+  for (CsvRow row; rows.next(row);) {
+    PathResult result;
+    std::string problem = row.problem;
+    if (problem.empty() && static_cast<Index>(row.values.size()) != 2 * d) {
+      problem = fmt::format("{} numbers; a pair takes {}, p1,...,pd,q1,...,qd", row.values.size(), 2 * d);
+    }
+    if (problem.empty()) {
+      const Eigen::Map<const Vector> p(row.values.data(), d);
+      const Eigen::Map<const Vector> q(row.values.data() + d, d);
+      try {
+        result = solver.solve(p, q);
+        problem = result.message;
+      } catch (const Cancelled&) {
+        std::cout.flush();
+        throw;
+      } catch (const Error& error) {
+        problem = error.what();
+      }
+    }
+    if (result.status != Status::ok) {
+      all_ok = false;
+      print_error(fmt::format("{} line {}: {}", arguments.pairs, row.line, problem));
+    }
+    std::cout << path_csv(result) << "\n";
+    context.report("pairs", -static_cast<double>(++count));
+  }
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+ExitCode run(const PathArguments& arguments) {
+  const bool one = !arguments.from.empty() && !arguments.to.empty();
+  const bool many = !arguments.from.empty() && !arguments.to_file.empty();
+  const bool pairs = !arguments.pairs.empty();
+  if (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty())) {
+    throw UsageError("give --from with --to, or --from with --to-file, or --pairs (see taut path --help)");
+  }
+  check_outputs(arguments.out, OutputKind::path);
+  const Timer timer;
+  const Context context = terminal_context(arguments.common.terminal);
+  const Surface surface = load_surface(arguments.surface, context);
+  const double surface_seconds = timer.seconds();
+  if (one) return run_one(arguments, surface, context, surface_seconds, timer);
+  if (many) return run_many(arguments, surface, context, surface_seconds, timer);
+  return run_pairs(arguments, surface, context);
+}
+
+}  // namespace
+
+Run add_path_command(CLI::App& app) {
+  auto arguments = std::make_shared<PathArguments>();
+  CLI::App& command = *app.add_subcommand("path", "shortest path between two points");
+  arguments->surface.add_to(command);
+  command.add_option("--from", arguments->from, "start: 1,0,0, or @17 for the 17th sample from 0");
+  command.add_option("--to", arguments->to, "end, likewise");
+  command.add_option("--to-file", arguments->to_file, "ends, one a line: every path shares the start's marched field");
+  command.add_option("--pairs", arguments->pairs,
+                     "pairs p1,...,pd,q1,...,qd, one a line; writes length,error,converged,locally_shortest,status");
+  PathOptions& options = arguments->options;
+  command.add_option("--tol", options.tolerance, "relative length tolerance")
+      ->check(CLI::Range(1e-13, 1e-3))
+      ->capture_default_str();
+  command.add_option("--cell", options.cell, "grid cell size (default: chosen)")->check(CLI::PositiveNumber);
+  command
+      .add_option("--method", options.method,
+                  "newton: machine precision; flow: the paper's curvature flow; grid: no correction")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, CorrectionMethod>{
+          {"newton", CorrectionMethod::newton}, {"flow", CorrectionMethod::flow}, {"grid", CorrectionMethod::grid}}));
+  command.add_option("--march", options.march, "distances on the cells: convergent, axis (the paper's) or dijkstra")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, MarchMethod>{
+          {"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+  command.add_option("--grid", options.grid, "cells by subdivide (Algorithm I) or grow (Algorithm II)")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, GridMethod>{{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
+  command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(CLI::PositiveNumber);
+  command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
+  command
+      .add_option("--out", arguments->out,
+                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::path))
+      ->allow_extra_args(false);
+  arguments->common.add_to(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace taut::app

@@ -1,0 +1,86 @@
+#include "points_argument.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+#include <vector>
+
+#include "taut/core/error.hpp"
+
+namespace taut::app {
+namespace {
+
+double parse_number(std::string_view text, const std::string& what) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    throw UsageError(fmt::format("{}: '{}' is beyond the range of numbers", what, text));
+  }
+  if (error != std::errc() || end != text.data() + text.size()) {
+    throw UsageError(fmt::format("{}: '{}' is no number; write numbers separated by commas, as in 1,0,0", what, text));
+  }
+  return value;
+}
+
+}  // namespace
+
+Vector parse_numbers(const std::string& text, const std::string& what) {
+  std::vector<double> values;
+  std::size_t begin = 0;
+  while (true) {
+    const std::size_t comma = text.find(',', begin);
+    values.push_back(parse_number(std::string_view(text).substr(begin, comma - begin), what));
+    if (comma == std::string::npos) break;
+    begin = comma + 1;
+  }
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+Vector parse_point(const std::string& text, const char* option, const Surface& surface) {
+  if (text.starts_with('@')) {
+    Index index = 0;
+    const auto [end, error] = std::from_chars(text.data() + 1, text.data() + text.size(), index);
+    if (error != std::errc() || end != text.data() + text.size() || index < 0) {
+      throw UsageError(fmt::format("{} {}: write @ and the number of a sample, as in @17", option, text));
+    }
+    if (surface.samples() == nullptr) {
+      throw InvalidArgument(fmt::format("{} {}: this surface has no samples; give coordinates", option, text));
+    }
+    if (index >= surface.samples()->size()) {
+      throw InvalidArgument(
+          fmt::format("{} {}: samples go from @0 to @{}", option, text, surface.samples()->size() - 1));
+    }
+    return surface.samples()->points.col(index);
+  }
+  const Vector point = parse_numbers(text, option);
+  if (point.size() != surface.dim()) {
+    throw InvalidArgument(fmt::format("{} {}: has {} coordinates, the surface lies in {} dimensions", option, text,
+                                      point.size(), surface.dim()));
+  }
+  if (!point.allFinite()) throw InvalidArgument(fmt::format("{} {}: coordinates must be finite", option, text));
+  return point;
+}
+
+Box parse_box(const std::string& text, Index dim) {
+  const Vector values = parse_numbers(text, "--box");
+  if (!values.allFinite()) throw UsageError("--box " + text + ": bounds must be finite");
+  Box box;
+  if (values.size() == 2) {
+    box = {Vector::Constant(dim, values(0)), Vector::Constant(dim, values(1))};
+  } else if (values.size() == 2 * dim) {
+    box = {Eigen::Map<const Vector, 0, Eigen::InnerStride<2>>(values.data(), dim),
+           Eigen::Map<const Vector, 0, Eigen::InnerStride<2>>(values.data() + 1, dim)};
+  } else {
+    throw UsageError(fmt::format("--box {}: give lo,hi or {} numbers, lo,hi of each axis in turn", text, 2 * dim));
+  }
+  if (!(box.lower.array() < box.upper.array()).all()) {
+    throw UsageError("--box " + text + ": each lower bound must be below its upper bound");
+  }
+  return box;
+}
+
+}  // namespace taut::app

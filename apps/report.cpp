@@ -1,0 +1,163 @@
+#include "report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace taut::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
+
+Json points_json(const PointsIn& points) {
+  Json list = Json::array();
+  for (Index j = 0; j < points.cols(); ++j) list.push_back(vector_json(points.col(j)));
+  return list;
+}
+
+bool has_path(const PathResult& result) { return result.points.cols() > 0; }
+
+std::string duration(double seconds) {
+  return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+}  // namespace
+
+std::string grouped(Index n) {
+  std::string text = std::to_string(n);
+  for (auto i = static_cast<std::ptrdiff_t>(text.size()) - 3; i > 0; i -= 3)
+    text.insert(static_cast<std::size_t>(i), ",");
+  return text;
+}
+
+const char* to_string(CorrectionMethod method) {
+  switch (method) {
+    case CorrectionMethod::newton: return "newton";
+    case CorrectionMethod::flow: return "flow";
+    case CorrectionMethod::grid: return "grid";
+  }
+  return "unknown";
+}
+
+Json path_json(const Surface& surface, const PathResult& result, const PathOptions& options, double surface_seconds,
+               double total_seconds) {
+  Json json;
+  json["command"] = "path";
+  json["status"] = to_string(result.status);
+  if (!result.message.empty()) json["message"] = result.message;
+  json["surface"] = {{"kind", surface.kind()}, {"dim", surface.dim()}, {"codim", surface.codim()}};
+  json["from"] = vector_json(result.from);
+  json["to"] = vector_json(result.to);
+  json["length"] = has_path(result) ? number(result.length) : Json(nullptr);
+  json["length_error"] = has_path(result) ? number(result.length_error) : Json(nullptr);
+  json["converged"] = result.status == Status::ok;
+  json["locally_shortest"] = result.locally_shortest;
+  if (result.conjugate_at) json["conjugate_at"] = *result.conjugate_at;
+  json["residual"] = {{"surface", number(result.residual.surface)},
+                      {"geodesic_curvature", number(result.residual.geodesic_curvature)}};
+  json["candidates"] = Json::array();
+  for (const PathCandidate& candidate : result.candidates) {
+    json["candidates"].push_back({{"length", candidate.length}, {"locally_shortest", candidate.locally_shortest}});
+  }
+  json["method"] = to_string(options.method);
+  json["cell"] = result.cell;
+  json["cells"] = result.num_cells;
+  json["iterations"] = result.num_iterations;
+  json["seconds"] = {{"surface", surface_seconds},
+                     {"cells", result.seconds.cells},
+                     {"march", result.seconds.march},
+                     {"correct", result.seconds.correct},
+                     {"total", total_seconds}};
+  json["points"] = points_json(result.points);
+  return json;
+}
+
+std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options, double surface_seconds,
+                                  double total_seconds) {
+  std::vector<SceneFact> facts;
+  const bool estimated = std::isfinite(result.length_error);
+  if (has_path(result)) {
+    facts.push_back({"length", estimated ? fmt::format("{:.15g} +- {:.1e}", result.length, result.length_error)
+                                         : fmt::format("{:.15g}", result.length)});
+  }
+  std::string status(to_string(result.status));
+  if (result.status == Status::ok && options.method != CorrectionMethod::grid) {
+    status += result.locally_shortest ? ", locally shortest" : ", not certified as locally shortest";
+  }
+  if (!result.message.empty()) status += ": " + result.message;
+  facts.push_back({"status", status});
+  if (has_path(result) && options.method != CorrectionMethod::grid) {
+    facts.push_back({"residual", fmt::format("off the surface {:.1e}, geodesic curvature {:.1e}",
+                                             result.residual.surface, result.residual.geodesic_curvature)});
+    facts.push_back({"method", fmt::format("{}, {} iterations", to_string(options.method), result.num_iterations)});
+  }
+  facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(result.num_cells), result.cell)});
+  facts.push_back({"time", fmt::format("{} (surface {}, cells {}, march {}, correct {})", duration(total_seconds),
+                                       duration(surface_seconds), duration(result.seconds.cells),
+                                       duration(result.seconds.march), duration(result.seconds.correct))});
+  return facts;
+}
+
+std::string facts_text(const std::vector<SceneFact>& facts) {
+  std::size_t width = 0;
+  for (const SceneFact& fact : facts) width = std::max(width, fact.name.size());
+  std::string text;
+  for (const SceneFact& fact : facts) text += fmt::format("{:<{}}  {}\n", fact.name, width, fact.value);
+  return text;
+}
+
+nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
+  Json json;
+  json["command"] = "info";
+  json["surface"] = {{"kind", summary.kind}, {"dim", summary.dim}, {"codim", summary.codim}};
+  json["box"] = {{"lower", vector_json(summary.box.lower)}, {"upper", vector_json(summary.box.upper)}};
+  json["cell"] = summary.cell;
+  json["cells"] = summary.num_cells;
+  json["components"] = summary.components;
+  json["samples"] = summary.num_samples;
+  if (summary.num_samples > 0) {
+    json["sample_residual"] = {{"rms", number(summary.sample_rms)}, {"max", number(summary.sample_max)}};
+  }
+  return json;
+}
+
+std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
+  const auto corner = [](const Vector& x) { return fmt::format("({:.4g})", fmt::join(x, ", ")); };
+  std::vector<SceneFact> facts;
+  facts.push_back({"kind", summary.kind});
+  facts.push_back({"space", fmt::format("{} dimensions, {} equation{}: a surface of dimension {}", summary.dim,
+                                        summary.codim, summary.codim == 1 ? "" : "s", summary.dim - summary.codim)});
+  if (summary.dim <= 6) facts.push_back({"box", corner(summary.box.lower) + " to " + corner(summary.box.upper)});
+  facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(summary.num_cells), summary.cell)});
+  std::string components = std::to_string(summary.components.size());
+  if (summary.components.size() > 1) {
+    constexpr std::size_t kShown = 6;
+    const std::size_t shown = std::min(kShown, summary.components.size());
+    components += fmt::format(
+        ", of {} cells{}",
+        fmt::join(summary.components.begin(), summary.components.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+        shown < summary.components.size() ? ", ..." : "");
+  }
+  facts.push_back({"components", components});
+  if (summary.num_samples > 0) {
+    facts.push_back({"samples", grouped(summary.num_samples)});
+    facts.push_back({"residual", fmt::format("samples lie {:.2e} (rms), {:.2e} (most) off the surface",
+                                             summary.sample_rms, summary.sample_max)});
+  }
+  return facts;
+}
+
+std::string path_csv(const PathResult& result) {
+  if (!has_path(result)) return fmt::format("nan,inf,0,0,{}", to_string(result.status));
+  return fmt::format("{},{},{:d},{:d},{}", result.length, result.length_error, result.status == Status::ok,
+                     result.locally_shortest, to_string(result.status));
+}
+
+}  // namespace taut::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "taut/query/path.hpp"
+#include "taut/query/surface_summary.hpp"
+#include "taut/view/scene.hpp"
+
+namespace taut::app {
+
+/// The JSON of one path, as the contract in docs/command_line.md spells it.
+[[nodiscard]] nlohmann::ordered_json path_json(const Surface& surface, const PathResult& result,
+                                               const PathOptions& options, double surface_seconds,
+                                               double total_seconds);
+
+/// The same for a person: a few lines, each a name and a value.
+[[nodiscard]] std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options,
+                                                double surface_seconds, double total_seconds);
+
+/// The facts as aligned lines.
+[[nodiscard]] std::string facts_text(const std::vector<SceneFact>& facts);
+
+[[nodiscard]] nlohmann::ordered_json summary_json(const SurfaceSummary& summary);
+[[nodiscard]] std::vector<SceneFact> summary_facts(const SurfaceSummary& summary);
+
+/// 12345 -> "12,345"
+[[nodiscard]] std::string grouped(Index n);
+
+/// "length,error,converged,locally_shortest,status" of one path, without a newline.
+[[nodiscard]] std::string path_csv(const PathResult& result);
+
+[[nodiscard]] const char* to_string(CorrectionMethod method);
+
+}  // namespace taut::app

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "taut/cells/mesh_surface.hpp"
+#include "taut/core/context.hpp"
+#include "taut/march/march.hpp"
+#include "taut/query/path.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut {
+
+struct FieldOptions {
+  MarchMethod march = MarchMethod::convergent;
+  GridMethod grid = GridMethod::automatic;
+  double cell = 0;  ///< grid cell size h, model units; 0 = chosen
+};
+
+/// Distances from a source to everywhere, for display and for a quick answer: as exact as the cells (docs/march.md).
+struct FieldResult {
+  /// d = 3: the surface with a vertex scalar "distance" (model units, NaN where no path leads). Empty otherwise.
+  SurfaceMesh mesh;
+  Points points;    ///< d x n: the projected cells
+  Vector distance;  ///< n: distance at each, infinity where no path leads
+  double cell = 0;  ///< h, model units
+  Index num_cells = 0;
+};
+
+/// Marches from the nearest of `sources` (d x s, projected onto the surface) over all cells. Throws as
+/// PathSolver::solve.
+[[nodiscard]] FieldResult marched_field(const Surface& surface, const PointsIn& sources,
+                                        const FieldOptions& options = {}, const Context& context = {});
+
+}  // namespace taut

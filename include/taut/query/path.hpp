@@ -1,0 +1,99 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "taut/core/context.hpp"
+#include "taut/curve/geodesic.hpp"
+#include "taut/march/march.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut {
+
+/// What shortens the marched polyline.
+enum class CorrectionMethod {
+  newton,  ///< Newton's method on a spectral curve: machine precision
+  flow,    ///< the paper's curvature flow: second order in the node spacing
+  grid,    ///< nothing: the polyline from the cells, as it would be without a correction
+};
+
+/// How the cells around the surface are found.
+enum class GridMethod {
+  automatic,  ///< grow for surfaces fitted to samples, subdivide for the others
+  subdivide,  ///< Algorithm I: every cell the surface crosses
+  grow,       ///< Algorithm II: from the samples, or lazily from the two ends where there are none
+};
+
+struct PathOptions {
+  CorrectionMethod method = CorrectionMethod::newton;
+  MarchMethod march = MarchMethod::convergent;
+  GridMethod grid = GridMethod::automatic;
+  /// Grid cell size h, model units. 0 = chosen, and halved by itself where the cells cannot tell two sheets apart.
+  double cell = 0;
+  /// Relative length tolerance, 1e-13 .. 1e-3.
+  double tolerance = 1e-9;
+  /// eps_E, the node spacing of the flow, model units; 0 = chosen.
+  double spacing = 0;
+  /// beta of the flow's equation (4).
+  double beta = 1;
+};
+
+/// Wall-clock seconds of each stage. Stages shared by several paths count for the first of them.
+struct PathSeconds {
+  double cells = 0;
+  double march = 0;
+  double correct = 0;
+};
+
+/// One geodesic among several between the same two points.
+struct PathCandidate {
+  double length = 0;  ///< model units
+  bool locally_shortest = false;
+  Points points;  ///< d x m
+};
+
+/// A path: the geodesic and how it was found.
+struct PathResult : Geodesic {
+  Vector from;          ///< d: the start, on the surface
+  Vector to;            ///< d: the end, on the surface
+  std::string message;  ///< why `status` is not ok, in one sentence; empty otherwise
+  double cell = 0;      ///< h of the cells that were walked, model units
+  Index num_cells = 0;
+  Points grid_path;                       ///< d x g: the polyline the correction started from
+  std::vector<PathCandidate> candidates;  ///< distinct geodesics found, shortest first; the first one is this path
+  PathSeconds seconds;
+};
+
+/// Shortest paths on one surface: keeps the cells, so that asking again is cheap. Not safe to share between threads.
+class PathSolver {
+ public:
+  /// Throws InvalidArgument for options out of range. Does no work yet.
+  explicit PathSolver(Surface surface, PathOptions options = {}, Context context = {});
+  ~PathSolver();
+  PathSolver(PathSolver&&) noexcept;
+  PathSolver& operator=(PathSolver&&) noexcept;
+
+  /// The path from p to q (d each), both projected onto the surface first; moving one by more than a cell is told
+  /// through Context::note, by more than ten cells it throws InvalidArgument. Also throws SingularPoint when a point
+  /// is singular, EmptySurface, OutOfMemory and Cancelled. Everything else is in `status`.
+  /// Properties: starts exactly at `from` and ends at `to`; length >= |p - q|; p = q gives length 0.
+  [[nodiscard]] PathResult solve(const VectorIn& p, const VectorIn& q);
+
+  /// From p to every column of `targets` (d x n) over one marched field. A target that cannot be answered carries its
+  /// status and message; only a bad p throws.
+  [[nodiscard]] std::vector<PathResult> solve_from(const VectorIn& p, const PointsIn& targets);
+
+  [[nodiscard]] const Surface& surface() const;
+
+ private:
+  struct Impl;
+  PathResult solve_or_explain(const VectorIn& p, const VectorIn& q);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One path on one surface.
+[[nodiscard]] PathResult shortest_path(const Surface& surface, const VectorIn& p, const VectorIn& q,
+                                       const PathOptions& options = {}, const Context& context = {});
+
+}  // namespace taut

@@ -1,0 +1,109 @@
+#include "query/cell_levels.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "query/cell_size.hpp"
+#include "taut/cells/find_box.hpp"
+#include "taut/cells/grow.hpp"
+#include "taut/cells/subdivide.hpp"
+#include "taut/surface/projection.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// A point this many cells off the surface is a mistake, not a rounded coordinate.
+constexpr double kMostCellsOff = 10;
+/// Without cells, what stands for their size: this part of the points' extent.
+constexpr double kPointsPerSide = 16;
+
+}  // namespace
+
+std::string text_of(const VectorIn& x) {
+  std::string text;
+  for (Index i = 0; i < x.size(); ++i) text += fmt::format("{}{}", i > 0 ? "," : "", x(i));
+  return text;
+}
+
+void check_point(const Surface& surface, const VectorIn& x, const char* name) {
+  if (x.size() != surface.dim()) {
+    throw InvalidArgument(fmt::format("{} point {}: has {} coordinates, the surface lies in {} dimensions", name,
+                                      text_of(x), x.size(), surface.dim()));
+  }
+  if (!x.allFinite()) throw InvalidArgument(fmt::format("{} point {}: coordinates must be finite", name, text_of(x)));
+}
+
+CellLevels::CellLevels(Surface surface, GridMethod grid, double cell, Context context)
+    : surface_(std::move(surface)), grid_(grid), context_(std::move(context)), cell_(cell) {
+  if (!(cell >= 0) || !std::isfinite(cell)) {
+    throw InvalidArgument(fmt::format("cell size {}: must be positive, or 0 to have it chosen", cell));
+  }
+}
+
+bool CellLevels::fitted() const { return surface_.samples() != nullptr && surface_.samples()->size() > 0; }
+
+double CellLevels::size(int level) const { return std::ldexp(size_, -level); }
+
+void CellLevels::prepare(const PointsIn& near) {
+  if (size_ > 0) {
+    bool inside = true;
+    for (Index j = 0; j < near.cols(); ++j) inside = inside && box_.contains(near.col(j));
+    if (inside || surface_.box()) return;
+    levels_.clear();
+  }
+  if (!exist()) {
+    box_ = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
+    size_ = std::max(box_.extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
+    return;
+  }
+  box_ = surface_.box() ? *surface_.box() : find_box(surface_, near, context_);
+  size_ = cell_;
+  if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box_);
+}
+
+SurfaceCells& CellLevels::cells(int level, const PointsIn& seeds) {
+  levels_.resize(std::max(levels_.size(), static_cast<std::size_t>(level) + 1));
+  std::optional<Level>& slot = levels_[static_cast<std::size_t>(level)];
+  if (slot && !slot->lazy) return slot->cells;
+  const double h = size(level);
+  const bool grows = grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted());
+  if (!grows) {
+    slot.emplace(
+        Level{SurfaceCells(surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_), context_),
+              false});
+  } else if (fitted()) {
+    slot.emplace(
+        Level{SurfaceCells(surface_, grow(surface_, surface_.samples()->points, h, context_), context_), false});
+  } else {
+    slot.emplace(Level{SurfaceCells::lazy(surface_, seeds, h, context_), true});
+  }
+  return slot->cells;
+}
+
+Vector CellLevels::on_surface(const VectorIn& x, const char* name) const {
+  const ProjectionResult projected = project_to_surface(surface_, x);
+  if (!projected.converged) {
+    throw InvalidArgument(
+        fmt::format("{} point {}: no point of the surface was found near it; give one closer", name, text_of(x)));
+  }
+  if (projected.distance > kMostCellsOff * size_) {
+    throw InvalidArgument(
+        fmt::format("{} point {}: lies {:.3g} off the surface, more than {:g} cells of {:.3g}; the "
+                    "surface point found is {}",
+                    name, text_of(x), projected.distance, kMostCellsOff, size_, text_of(projected.point)));
+  }
+  if (projected.distance > size_) {
+    context_.tell(fmt::format("{} point {} moved by {:.3g} onto the surface, to {}", name, text_of(x),
+                              projected.distance, text_of(projected.point)));
+  }
+  if (!surface_.inside_domain(projected.point, size_)(0)) {
+    throw InvalidArgument(fmt::format("{} point {}: the surface does not reach there, it is cut off by its domain",
+                                      name, text_of(projected.point)));
+  }
+  return projected.point;
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "taut/cells/surface_cells.hpp"
+#include "taut/core/box.hpp"
+#include "taut/core/context.hpp"
+#include "taut/query/path.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut::detail {
+
+/// The cells of one surface at sizes h, h/2, h/4, ..., each made when first asked for and then kept.
+class CellLevels {
+ public:
+  /// Beyond it there would be too many cells.
+  static constexpr Index kMostDimensions = 6;
+
+  /// `cell` = 0 has the size h chosen.
+  CellLevels(Surface surface, GridMethod grid, double cell, Context context);
+
+  /// Makes sure that the points near (d x n) lie where cells are looked for. Finds the box and h the first time.
+  void prepare(const PointsIn& near);
+
+  /// False in more than kMostDimensions: then there is a box and a size to judge points by, but no cells.
+  [[nodiscard]] bool exist() const { return surface_.dim() <= kMostDimensions; }
+  /// How many sizes are worth trying: the number of cells grows by 2^(d - 1) each time.
+  [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
+  [[nodiscard]] double size(int level) const;
+  /// Where cells are looked for. Empty until prepared.
+  [[nodiscard]] const Box& box() const { return box_; }
+  /// The cells of a level. `seeds` (d x n) are where lazy ones start; they grow anew for each call.
+  SurfaceCells& cells(int level, const PointsIn& seeds);
+
+  /// x (d) brought onto the surface. `name` ("start") says in messages which point it is. Throws InvalidArgument when
+  /// x does not fit the surface or lies more than ten cells off it; a move of more than one cell is told.
+  [[nodiscard]] Vector on_surface(const VectorIn& x, const char* name) const;
+
+ private:
+  struct Level {
+    SurfaceCells cells;
+    bool lazy;
+  };
+  [[nodiscard]] bool fitted() const;
+
+  Surface surface_;
+  GridMethod grid_;
+  Context context_;
+  double cell_;
+  double size_ = 0;  // h of level 0; 0 until prepared
+  Box box_;
+  std::vector<std::optional<Level>> levels_;
+};
+
+/// "1,0,0.5": a point as the command line takes it.
+[[nodiscard]] std::string text_of(const VectorIn& x);
+
+/// Throws InvalidArgument unless x has the surface's dimension and is finite.
+void check_point(const Surface& surface, const VectorIn& x, const char* name);
+
+}  // namespace taut::detail

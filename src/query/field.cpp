@@ -1,0 +1,40 @@
+#include "taut/query/field.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "query/cell_levels.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut {
+
+FieldResult marched_field(const Surface& surface, const PointsIn& sources, const FieldOptions& options,
+                          const Context& context) {
+  if (sources.cols() == 0) throw InvalidArgument("a distance field needs at least one source");
+  for (Index j = 0; j < sources.cols(); ++j) detail::check_point(surface, sources.col(j), "source");
+  detail::CellLevels levels(surface, options.grid, options.cell, context);
+  levels.prepare(sources);
+  Points on_surface(sources.rows(), sources.cols());
+  for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = levels.on_surface(sources.col(j), "source");
+
+  SurfaceCells& cells = levels.cells(0, on_surface);
+  const DistanceField field =
+      march(surface, cells, on_surface, MarchOptions{.method = options.march, .target = {}}, context);
+  FieldResult result;
+  result.cell = cells.grid().size();
+  result.num_cells = cells.num_cells();
+  result.distance = field.distance;
+  result.points.resize(surface.dim(), cells.num_cells());
+  for (Index i = 0; i < cells.num_cells(); ++i) result.points.col(i) = cells.point(i);
+  if (surface.dim() != 3 || surface.codim() != 1) return result;
+
+  result.mesh = mesh_surface(surface, cells.grid(), {}, context);
+  VertexScalar distance{"distance", distance_at(surface, cells, field, result.mesh.vertices)};
+  for (double& u : distance.values) {
+    if (!std::isfinite(u)) u = std::numeric_limits<double>::quiet_NaN();
+  }
+  result.mesh.scalars.push_back(std::move(distance));
+  return result;
+}
+
+}  // namespace taut

@@ -1,0 +1,21 @@
+#include "taut/query/surface_mesh.hpp"
+
+#include "query/cell_levels.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut {
+
+SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
+  if (surface.dim() != 3 || surface.codim() != 1) {
+    throw InvalidArgument("only surfaces in 3 dimensions with one equation can be meshed, not " +
+                          std::to_string(surface.dim()) + " dimensions with " + std::to_string(surface.codim()));
+  }
+  detail::CellLevels levels(surface, options.grid, options.cell, context);
+  levels.prepare(Points(surface.dim(), 0));
+  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(0, Points(surface.dim(), 0)).grid(), {}, context);
+  if (mesh.faces.cols() == 0)
+    throw EmptySurface("the surface has no piece that these cells can show; try a smaller one");
+  return mesh;
+}
+
+}  // namespace taut

@@ -1,0 +1,20 @@
+# Installs the build under test to a scratch prefix, builds the consumer against it and runs it.
+# Variables: BUILD_DIR, SOURCE_DIR (this folder), SCRATCH, GENERATOR, CXX_FLAGS, CXX
+file(REMOVE_RECURSE ${SCRATCH})
+foreach(step IN ITEMS install configure build run)
+  if(step STREQUAL "install")
+    set(command ${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${SCRATCH}/prefix)
+  elseif(step STREQUAL "configure")
+    set(command ${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${SCRATCH}/build -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${SCRATCH}/prefix
+      -DCMAKE_CXX_COMPILER=${CXX} -DCMAKE_CXX_FLAGS=${CXX_FLAGS})
+  elseif(step STREQUAL "build")
+    set(command ${CMAKE_COMMAND} --build ${SCRATCH}/build)
+  else()
+    set(command ${SCRATCH}/build/consumer)
+  endif()
+  execute_process(COMMAND ${command} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${step} failed (${result}):\n${output}")
+  endif()
+endforeach()
+message(STATUS "${output}")

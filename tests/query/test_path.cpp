@@ -1,0 +1,185 @@
+#include "taut/query/path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "support/surfaces.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace taut {
+namespace {
+
+using std::numbers::pi;
+
+Vector axis(Index d, Index i) { return Vector::Unit(d, i); }
+
+Vector random_unit(Index d, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  Vector x(d);
+  for (double& c : x) c = normal(random);
+  return x.normalized();
+}
+
+TEST(ShortestPath, QuarterOfAGreatCircleInSeveralDimensions) {
+  for (const Index d : {2, 3, 4, 6, 10, 50}) {
+    const PathResult path = shortest_path(test::unit_sphere(d), axis(d, 0), axis(d, 1));
+    ASSERT_EQ(path.status, Status::ok) << "d = " << d << ": " << path.message;
+    EXPECT_NEAR(path.length, pi / 2, 1e-9) << "d = " << d;
+    EXPECT_LE(std::abs(path.length - pi / 2), path.length_error + 1e-15) << "d = " << d;
+    EXPECT_TRUE(path.locally_shortest) << "d = " << d;
+  }
+}
+
+TEST(ShortestPath, RunsFromStartToEndExactlyAndNotBackwards) {
+  const Vector p = Eigen::Vector3d(1.4, 0, 0);
+  const Vector q = Eigen::Vector3d(0, -1, 0.4);
+  const PathResult path = shortest_path(test::torus(), p, q);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_EQ(path.points.col(0), path.from);
+  EXPECT_EQ(path.points.rightCols(1), path.to);
+  EXPECT_LT((path.from - p).norm(), 1e-14);
+  EXPECT_LT((path.to - q).norm(), 1e-14);
+  // Steps go forward: consecutive ones never turn back.
+  for (Index i = 2; i < path.points.cols(); ++i) {
+    const Vector a = path.points.col(i - 1) - path.points.col(i - 2);
+    const Vector b = path.points.col(i) - path.points.col(i - 1);
+    EXPECT_GT(a.dot(b), 0) << "at point " << i;
+  }
+}
+
+TEST(ShortestPath, IsSymmetricAndAboveTheChordOnRandomPairs) {
+  constexpr unsigned kSeed = 7;
+  std::mt19937 random(kSeed);
+  PathSolver solver(test::ellipsoid(1, 0.8, 0.5));
+  const Eigen::Vector3d a(1, 0.8, 0.5);
+  for (int trial = 0; trial < 10; ++trial) {
+    const Vector p = random_unit(3, random).cwiseProduct(a);
+    const Vector q = random_unit(3, random).cwiseProduct(a);
+    const PathResult there = solver.solve(p, q);
+    const PathResult back = solver.solve(q, p);
+    ASSERT_EQ(there.status, Status::ok) << there.message << " seed " << kSeed << " trial " << trial;
+    ASSERT_EQ(back.status, Status::ok) << back.message << " seed " << kSeed << " trial " << trial;
+    EXPECT_NEAR(there.length, back.length, 1e-9 * there.length) << "seed " << kSeed << " trial " << trial;
+    EXPECT_GE(there.length, (p - q).norm() * (1 - 1e-12));
+  }
+}
+
+// GeographicLib's triaxial geodesics: x^2/2.25 + y^2 + z^2/0.25 = 1 from (1.5 cos w, sin w, 0), w = 20 deg to w = -175
+// deg.
+TEST(ShortestPath, TriaxialEllipsoidAgreesWithGeographicLib) {
+  const auto on_equator = [](double degrees) {
+    const double w = degrees * pi / 180;
+    return Vector(Eigen::Vector3d(1.5 * std::cos(w), std::sin(w), 0));
+  };
+  const PathResult path = shortest_path(test::ellipsoid(1.5, 1, 0.5), on_equator(20), on_equator(-175));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, 3.2689702, 5e-8);
+}
+
+TEST(ShortestPath, DoesNotDependOnTheCells) {
+  const Surface tangle = test::tangle_cube();
+  const Vector p = Eigen::Vector3d(2, 0.7, 0.7);
+  const Vector q = Eigen::Vector3d(0.7, 2, -0.7);
+  const PathResult coarse = shortest_path(tangle, p, q, {.cell = 0.16});
+  const PathResult fine = shortest_path(tangle, p, q, {.cell = 0.09});
+  ASSERT_EQ(coarse.status, Status::ok) << coarse.message;
+  ASSERT_EQ(fine.status, Status::ok) << fine.message;
+  EXPECT_NEAR(coarse.length, fine.length, 1e-8);
+}
+
+TEST(ShortestPath, EveryMethodAgreesToItsAccuracy) {
+  const Vector p = axis(3, 0);
+  const Vector q = axis(3, 1);
+  EXPECT_NEAR(shortest_path(test::unit_sphere(), p, q, {.method = CorrectionMethod::flow}).length, pi / 2, 1e-4);
+  EXPECT_NEAR(shortest_path(test::unit_sphere(), p, q, {.method = CorrectionMethod::grid}).length, pi / 2, 0.02);
+  for (const MarchMethod march : {MarchMethod::convergent, MarchMethod::axis, MarchMethod::dijkstra}) {
+    for (const GridMethod grid : {GridMethod::subdivide, GridMethod::grow}) {
+      const PathResult path = shortest_path(test::unit_sphere(), p, q, {.march = march, .grid = grid});
+      ASSERT_EQ(path.status, Status::ok) << path.message;
+      EXPECT_NEAR(path.length, pi / 2, 1e-9);
+    }
+  }
+}
+
+TEST(ShortestPath, SamePointHasLengthZero) {
+  const PathResult path = shortest_path(test::unit_sphere(), axis(3, 0), axis(3, 0));
+  EXPECT_EQ(path.status, Status::ok);
+  EXPECT_EQ(path.length, 0);
+  EXPECT_EQ(path.points.cols(), 2);
+}
+
+TEST(ShortestPath, VeryNearPointsAreAChordApart) {
+  const Vector p = axis(3, 0);
+  const Vector q = Eigen::Vector3d(std::cos(1e-9), std::sin(1e-9), 0);
+  const PathResult path = shortest_path(test::unit_sphere(), p, q);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, 1e-9, 1e-15);
+}
+
+TEST(ShortestPath, DifferentComponentsAreDisconnected) {
+  const Surface two = parse_surface("(x^2+y^2+z^2-1)*((x-4)^2+y^2+z^2-1)=0");
+  const PathResult path = shortest_path(two, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(3, 0, 0));
+  EXPECT_EQ(path.status, Status::disconnected);
+  EXPECT_EQ(path.points.cols(), 0);
+  EXPECT_FALSE(path.message.empty());
+}
+
+TEST(ShortestPath, RefusesBadPoints) {
+  const Surface sphere = test::unit_sphere();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)shortest_path(sphere, Eigen::Vector3d(nan, 0, 0), axis(3, 1)), InvalidArgument);
+  EXPECT_THROW((void)shortest_path(sphere, Eigen::Vector2d(1, 0), axis(3, 1)), InvalidArgument);
+  EXPECT_THROW((void)shortest_path(sphere, Eigen::Vector3d(9, 0, 0), axis(3, 1)), InvalidArgument);
+  EXPECT_THROW((void)shortest_path(sphere, axis(3, 0), axis(3, 1), {.tolerance = 0}), InvalidArgument);
+  EXPECT_THROW((void)shortest_path(sphere, axis(3, 0), axis(3, 1), {.cell = -1}), InvalidArgument);
+}
+
+TEST(ShortestPath, TheConesApexIsSingular) {
+  const Surface cone = parse_surface("x^2+y^2=z^2");
+  EXPECT_THROW((void)shortest_path(cone, Vector::Zero(3), Eigen::Vector3d(1, 0, 1)), Error);
+}
+
+TEST(PathSolver, OneSourceToManyEqualsPairByPair) {
+  PathSolver solver(test::torus());
+  Points targets(3, 4);
+  targets << -1.4, 0, 1, -0.6,  //
+      0, 1.4, 0, 0,             //
+      0, 0, 0.4, 0;
+  const Vector p = Eigen::Vector3d(0.6, 0, 0);
+  const std::vector<PathResult> paths = solver.solve_from(p, targets);
+  ASSERT_EQ(paths.size(), 4U);
+  for (Index j = 0; j < 4; ++j) {
+    const PathResult single = solver.solve(p, targets.col(j));
+    ASSERT_EQ(paths[static_cast<std::size_t>(j)].status, Status::ok);
+    EXPECT_NEAR(paths[static_cast<std::size_t>(j)].length, single.length, 1e-8) << "target " << j;
+  }
+}
+
+TEST(PathSolver, ABadTargetCarriesItsReasonAndTheRestGoesOn) {
+  PathSolver solver(test::unit_sphere());
+  Points targets(3, 3);
+  targets << 0, 50, 0, 1, 0, 0, 0, 0, 1;
+  targets(1, 2) = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<PathResult> paths = solver.solve_from(axis(3, 0), targets);
+  EXPECT_EQ(paths[0].status, Status::ok);
+  EXPECT_NE(paths[1].status, Status::ok);
+  EXPECT_FALSE(paths[1].message.empty());
+  EXPECT_NE(paths[2].status, Status::ok);
+}
+
+TEST(PathSolver, ThreadsDoNotChangeTheResult) {
+  const Vector p = Eigen::Vector3d(1.4, 0, 0);
+  const Vector q = Eigen::Vector3d(-1, 0, 0.4);
+  const PathResult one = shortest_path(test::torus(), p, q, {}, {.threads = 1});
+  const PathResult four = shortest_path(test::torus(), p, q, {}, {.threads = 4});
+  EXPECT_EQ(one.length, four.length);
+  EXPECT_EQ(one.points, four.points);
+}
+
+}  // namespace
+}  // namespace taut
