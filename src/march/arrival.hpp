@@ -224,7 +224,11 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
     Neighbour<D> pair[2];
     std::size_t unusable = kNone;
     for (int side = 0; side < 2; ++side) {
-      if (chosen[side] != kNone && !unroll(candidates_[chosen[side]], pair[side])) unusable = chosen[side];
+      if (chosen[side] == best) {
+        pair[side] = first;
+      } else if (chosen[side] != kNone && !unroll(candidates_[chosen[side]], pair[side])) {
+        unusable = chosen[side];
+      }
     }
     if (unusable != kNone) {
       drop(unusable);

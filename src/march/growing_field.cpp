@@ -1,13 +1,10 @@
 #include "march/growing_field.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "cells/memory_guard.hpp"
 
 namespace taut::detail {
-
-const double GrowingField::kUnknown = std::numeric_limits<double>::infinity();
 
 GrowingField::GrowingField(const MarchTask& task, DistanceField& field, bool gradients)
     : task_(task), field_(field), gradients_(gradients), memory_limit_(memory_limit(task.context)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "march/front.hpp"
@@ -43,7 +44,7 @@ class GrowingField {
   void finish(double target_distance);
 
  private:
-  static const double kUnknown;
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
   void grow();
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "march/tangent_frame.hpp"
@@ -20,6 +22,7 @@ class NeighbourIndex {
  public:
   explicit NeighbourIndex(const SurfaceCells& cells) : cells_(cells), d_(cells.grid().dim()) {
     blocks_.assign(kMinSlots, kNoBlock);
+    if constexpr (D == Eigen::Dynamic) known_.resize(std::size_t{1} << d_);
     for (Index axis = 0; axis < dim(); ++axis) {
       shift_[axis] = block_size_;
       block_size_ += side_bits(axis);
@@ -59,7 +62,7 @@ class NeighbourIndex {
         place[axis][step] = local(c, axis);
       }
     }
-    known_.assign(std::size_t{1} << dim(), kUnknown);
+    std::fill_n(known_.begin(), std::size_t{1} << dim(), kUnknown);
     found_.clear();
     int step[kMaxMarchDim] = {};
     for (Index axis = 0; axis < dim();) {
@@ -150,7 +153,9 @@ class NeighbourIndex {
   std::vector<std::uint32_t> blocks_;      // open addressing by block coordinates
   std::vector<std::int32_t> coordinates_;  // d a block
   std::vector<std::uint32_t> entries_;     // 2^block_size_ a block: cell + 1, 0 = none
-  std::vector<std::uint32_t> known_;       // blocks around the cell asked about
+  using Known = std::conditional_t<D == Eigen::Dynamic, std::vector<std::uint32_t>,
+                                   std::array<std::uint32_t, std::size_t{1} << (D > 0 ? D : 0)>>;
+  Known known_{};  // blocks around the cell asked about
   std::vector<Index> found_;
 };
 
