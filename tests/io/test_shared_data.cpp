@@ -98,6 +98,13 @@ INSTANTIATE_TEST_SUITE_P(
                     Expected{"meshes/knot_genus1.off", 3200, 6400, false, {0.9602, 1.0, 0.4646}}),
     test_name);
 
+TEST(ExampleData, BunnyIsAClosedMeshOfGenusZero) {
+  const PointCloud mesh = read_point_cloud(TAUT_TEST_DATA "/../../examples/data/bunny.ply");
+  EXPECT_EQ(mesh.size(), 1839);
+  EXPECT_EQ(mesh.faces.cols(), 3674);
+  EXPECT_EQ(euler_characteristic(mesh), 2);
+}
+
 TEST(SharedDataTopology, FertilityHasGenusFour) {
   const char* folder = std::getenv("TAUT_SHARED_DATA");
   if (folder == nullptr) GTEST_SKIP() << "TAUT_SHARED_DATA is not set";
