@@ -7,9 +7,9 @@
 #include <string_view>
 #include <utility>
 
-#include "core/whole_file.hpp"
 #include "io/input_file.hpp"
 #include "taut/core/error.hpp"
+#include "taut/io/output_file.hpp"
 
 // The format, all numbers little-endian, a real as its 64 IEEE bits, an integer in 64 bits:
 //   "taut model 1\n"
@@ -64,25 +64,27 @@ class ModelWriter {
 class ModelReader {
  public:
   explicit ModelReader(const detail::InputFile& file) : file_(file), rest_(file.bytes) {
-    if (!rest_.starts_with(kMagic)) file_.fail("is not a model that taut fit wrote");
+    if (!rest_.starts_with(kMagic)) file_.fail("is not a model that taut fit wrote; fit the cloud with taut fit");
     rest_.remove_prefix(kMagic.size());
     if (!rest_.starts_with(kVersion)) {
       file_.fail("has model version " + detail::quote(rest_.substr(0, rest_.find('\n'))) +
-                 ": this program reads version 1");
+                 ", this program reads version 1; fit the cloud again");
     }
     rest_.remove_prefix(kVersion.size());
     constexpr std::size_t kWord = 8;
-    if (rest_.size() < kWord) file_.fail("is cut short");
+    if (rest_.size() < kWord) file_.fail("is cut short; fit the cloud again");
     const std::string_view covered(file.bytes.data(), file.bytes.size() - kWord);
     std::string_view last = std::string_view(file.bytes).substr(covered.size());
-    if (take_word(last) != checksum(covered)) file_.fail("is damaged or cut short: its checksum does not fit");
+    if (take_word(last) != checksum(covered))
+      file_.fail("is damaged or cut short (its checksum does not fit); fit the cloud again");
     rest_.remove_suffix(kWord);
   }
 
   Index integer() {
     const auto value = static_cast<std::int64_t>(word());
     // No count in a model is negative or anywhere near this.
-    if (value < 0 || value > std::int64_t{1} << 40) file_.fail("is damaged: a count is " + std::to_string(value));
+    if (value < 0 || value > std::int64_t{1} << 40)
+      file_.fail("is damaged (a count is " + std::to_string(value) + "); fit the cloud again");
     return static_cast<Index>(value);
   }
   double real() { return std::bit_cast<double>(word()); }
@@ -91,23 +93,23 @@ class ModelReader {
     const Index rows = integer();
     const Index cols = integer();
     const auto left = static_cast<Index>(rest_.size() / 8);
-    if (cols > 0 && rows > left / cols) file_.fail("is damaged: a table is larger than the file");
+    if (cols > 0 && rows > left / cols) file_.fail("is damaged (a table is larger than the file); fit the cloud again");
     const bool fits = (Matrix::RowsAtCompileTime == Eigen::Dynamic || Matrix::RowsAtCompileTime == rows) &&
                       (Matrix::ColsAtCompileTime == Eigen::Dynamic || Matrix::ColsAtCompileTime == cols);
-    if (!fits) file_.fail("is damaged: a table has the wrong shape");
+    if (!fits) file_.fail("is damaged (a table has the wrong shape); fit the cloud again");
     Matrix result(rows, cols);
     for (auto& entry : result.reshaped()) read(entry);
     return result;
   }
   void finish() const {
-    if (!rest_.empty()) file_.fail("is damaged: there is more in it than a model");
+    if (!rest_.empty()) file_.fail("is damaged (there is more in it than a model); fit the cloud again");
   }
 
  private:
   void read(double& value) { value = real(); }
   void read(int& value) { value = static_cast<int>(integer()); }
   std::uint64_t word() {
-    if (rest_.size() < 8) file_.fail("is damaged: it ends too early");
+    if (rest_.size() < 8) file_.fail("is damaged (it ends too early); fit the cloud again");
     return take_word(rest_);
   }
   static std::uint64_t take_word(std::string_view& from) {
@@ -134,7 +136,7 @@ void require_sound(const RbfModel& model, const detail::InputFile& file) {
                       model.origin.allFinite() && model.scale > 0 && std::isfinite(model.scale) &&
                       model.support_radius >= 0 && samples.points.allFinite();
   const bool faces = samples.faces.size() == 0 || samples.faces.maxCoeff() < samples.points.cols();
-  if (!shapes || !values || !faces) file.fail("is damaged: its parts do not fit together");
+  if (!shapes || !values || !faces) file.fail("is damaged (its parts do not fit together); fit the cloud again");
 }
 
 }  // namespace
@@ -158,7 +160,7 @@ void write_model(const std::filesystem::path& path, const RbfModel& model) {
                              report.left_out_rms, report.left_out_max}) {
     out.real(value);
   }
-  detail::write_whole_file(path.string(), out.finish());
+  write_text(path, out.finish());
 }
 
 RbfModel read_model(const std::filesystem::path& path, const Context& context) {
@@ -166,7 +168,7 @@ RbfModel read_model(const std::filesystem::path& path, const Context& context) {
   ModelReader in(file);
   RbfModel model;
   const Index kernel = in.integer();
-  if (kernel > 1) file.fail("is damaged: it names kernel " + std::to_string(kernel));
+  if (kernel > 1) file.fail("is damaged (it names kernel " + std::to_string(kernel) + "); fit the cloud again");
   model.kernel = kernel == 1 ? RbfKernel::quintic : RbfKernel::cubic;
   model.centres = in.matrix<Points>();
   model.weights = in.matrix<Vector>();

@@ -248,6 +248,7 @@ PointCloud read_pcd(const InputFile& file) {
   const auto dropped = static_cast<std::size_t>(rows.cols() - kept);
   if (dropped > 0) file.note(counted(dropped, "point") + " without finite coordinates left out");
   PointCloud cloud;
+  if (kept == 0) return cloud;
   cloud.points = rows.topRows<3>().leftCols(kept);
   if (wanted[3] != nullptr && wanted[4] != nullptr && wanted[5] != nullptr)
     cloud.normals = rows.bottomRows<3>().leftCols(kept);

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "core/whole_file.hpp"
+#include "taut/io/output_file.hpp"
 #include "view/encode.hpp"
 #include "view/page_text.hpp"
 #include "view/picture.hpp"
@@ -228,6 +228,6 @@ std::string to_html(const Scene& scene) {
                                             {"scene", scene_json(stage, still.towards_viewer)}}});
 }
 
-void write_html(const std::string& path, const Scene& scene) { detail::write_whole_file(path, to_html(scene)); }
+void write_html(const std::string& path, const Scene& scene) { write_text(path, to_html(scene)); }
 
 }  // namespace taut

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "core/whole_file.hpp"
 #include "taut/core/error.hpp"
+#include "taut/io/output_file.hpp"
 #include "taut/view/write_picture.hpp"
 #include "view/encode.hpp"
 #include "view/picture.hpp"
@@ -14,7 +14,7 @@ std::string to_png(const Scene& scene, const PictureOptions& options) {
 }
 
 void write_png(const std::string& path, const Scene& scene, const PictureOptions& options) {
-  detail::write_whole_file(path, to_png(scene, options));
+  write_text(path, to_png(scene, options));
 }
 
 }  // namespace taut

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/whole_file.hpp"
+#include "taut/io/output_file.hpp"
 #include "taut/view/write_picture.hpp"
 #include "view/encode.hpp"
 #include "view/path_runs.hpp"
@@ -262,7 +262,7 @@ std::string to_svg(const Scene& scene, const PictureOptions& options) {
 }
 
 void write_svg(const std::string& path, const Scene& scene, const PictureOptions& options) {
-  detail::write_whole_file(path, to_svg(scene, options));
+  write_text(path, to_svg(scene, options));
 }
 
 }  // namespace taut
