@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
@@ -127,12 +128,12 @@ Run add_field_command(CLI::App& app) {
                   "the surface with marched distances, to FILE by extension: " + known_outputs(OutputKind::mesh))
       ->allow_extra_args(false);
   command.add_option("--tol", arguments->tolerance, "relative tolerance of distances --at points")
-      ->check(CLI::Range(1e-13, 1e-3))
+      ->check(number_between(1e-13, 1e-3))
       ->capture_default_str();
-  command.add_option("--cell", arguments->options.cell, "grid cell size (default: chosen)")->check(CLI::PositiveNumber);
+  command.add_option("--cell", arguments->options.cell, "grid cell size (default: chosen)")->check(positive_number());
   command.add_option("--march", arguments->options.march, "convergent, axis (the paper's) or dijkstra")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MarchMethod>{
-          {"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+      ->transform(one_of<MarchMethod>(
+          {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

@@ -12,7 +12,6 @@
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
-#include "taut/io/read_point_cloud.hpp"
 
 namespace taut::app {
 namespace {
@@ -29,8 +28,7 @@ ExitCode run(const FitArguments& arguments) {
     throw UsageError("--out " + arguments.out + ": a model file ends in .taut");
   }
   const Context context = terminal_context(arguments.common.terminal);
-  const PointCloud cloud = read_point_cloud(arguments.cloud, context);
-  const RbfModel model = fit_rbf(cloud, arguments.options, context);
+  const RbfModel model = fit_file(arguments.cloud, arguments.options, context);
   write_model(arguments.out, model);
   clear_progress();
   const RbfReport& report = model.report;

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "report.hpp"
@@ -27,7 +28,7 @@ Run add_info_command(CLI::App& app) {
   auto arguments = std::make_shared<InfoArguments>();
   CLI::App& command = *app.add_subcommand("info", "what a surface is: dimension, extent, cells, components");
   arguments->surface.add_to(command);
-  command.add_option("--cell", arguments->cell, "grid cell size (default: chosen)")->check(CLI::PositiveNumber);
+  command.add_option("--cell", arguments->cell, "grid cell size (default: chosen)")->check(positive_number());
   command.add_flag("--json", arguments->json, "one JSON object on stdout");
   arguments->common.add_to(command);
   return [arguments] {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "checks.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
@@ -41,8 +42,7 @@ Surface load_file(const SurfaceArguments& arguments, const Context& context) {
   if (arguments.surface.ends_with(".taut")) {
     return make_surface(std::make_shared<const RbfModel>(read_model(arguments.surface)));
   }
-  const PointCloud cloud = read_point_cloud(arguments.surface, context);
-  return make_surface(std::make_shared<const RbfModel>(fit_rbf(cloud, arguments.rbf, context)));
+  return make_surface(std::make_shared<const RbfModel>(fit_file(arguments.surface, arguments.rbf, context)));
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void SurfaceArguments::add_to(CLI::App& command) {
                   "a formula such as 'x^2+y^2+4z^2=1', a point cloud or mesh file, or a .taut model")
       ->required();
   command.add_option("--dim", dim, "dimension of a formula's space (default: its largest variable)")
-      ->check(CLI::Range(2, 100000));
+      ->check(number_between(2, 100000));
   command.add_option("--set", parameters, "a parameter of the formula, NAME=VALUE (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
@@ -64,14 +64,24 @@ void SurfaceArguments::add_to(CLI::App& command) {
 
 void add_fit_options(CLI::App& command, RbfOptions& options) {
   command.add_option("--smooth", options.smoothing, "smoothing of the fit; 0 passes through every sample")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_not_below_zero())
       ->group("Fitting a cloud");
   command.add_option("--samples-max", options.max_samples, "fit at most this many well-spread samples")
-      ->check(CLI::Range(10, 20000))
+      ->check(number_between(10, 20000))
       ->group("Fitting a cloud");
   command
       .add_option("--support", options.support_radius, "the surface ends this far from its samples; negative = never")
+      ->check(any_number())
       ->group("Fitting a cloud");
+}
+
+RbfModel fit_file(const std::string& path, const RbfOptions& options, const Context& context) {
+  const PointCloud cloud = read_point_cloud(path, context);
+  try {
+    return fit_rbf(cloud, options, context);
+  } catch (const InvalidArgument& error) {
+    throw IoError(path, error.what());
+  }
 }
 
 bool names_a_file(const std::string& surface) {

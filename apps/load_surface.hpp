@@ -26,6 +26,9 @@ struct SurfaceArguments {
 /// --smooth, --samples-max and --support: how a cloud is fitted.
 void add_fit_options(CLI::App& command, RbfOptions& options);
 
+/// Reads a cloud and fits it. What is wrong with the points names the file, as an IoError.
+[[nodiscard]] RbfModel fit_file(const std::string& path, const RbfOptions& options, const Context& context);
+
 /// The surface, from a formula, a point cloud (fitted) or a `.taut` model. Throws what the readers throw.
 [[nodiscard]] Surface load_surface(const SurfaceArguments& arguments, const Context& context);
 

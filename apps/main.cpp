@@ -1,5 +1,7 @@
 // The taut program: reads the command line, runs one command, maps what went wrong to an exit code and one line.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <cstdio>
@@ -7,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
@@ -69,6 +72,19 @@ ExitCode guarded(const Run& run) {
   }
 }
 
+/// What is wrong with the command's name; empty when nothing is.
+std::string check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
+  if (!arguments.empty() && arguments.front().starts_with("-")) return "";
+  std::string names;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    if (!arguments.empty() && command->get_name() == arguments.front()) return "";
+    names += (names.empty() ? "" : ", ") + command->get_name();
+  }
+  const std::string problem =
+      arguments.empty() ? "give a command" : fmt::format("there is no command '{}'", arguments.front());
+  return fmt::format("{}; the commands are {} (see taut --help)", problem, names);
+}
+
 int run_program(int argc, char** argv) {
   CLI::App app{kDescription, "taut"};
   app.footer(kFooter);
@@ -83,6 +99,7 @@ int run_program(int argc, char** argv) {
   }
 
   std::vector<std::string> arguments = shield_negatives(argc, argv);
+  if (const std::string problem = check_command(app, arguments); !problem.empty()) return fail(kWrongUsage, problem);
   std::reverse(arguments.begin(), arguments.end());  // the order CLI11 wants
   try {
     app.parse(std::move(arguments));
@@ -108,7 +125,7 @@ int run_program(int argc, char** argv) {
 
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--threads", terminal.threads, "threads; 0 = all cores (never changes a result)")
-      ->check(CLI::Range(0, 4096));
+      ->check(number_between(0, 4096));
   command.add_flag("--quiet", terminal.quiet, "no notes and no progress on stderr");
   command.add_flag("--progress", terminal.progress, "progress lines even when stderr is no terminal");
 }

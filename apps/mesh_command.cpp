@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
@@ -44,7 +45,7 @@ Run add_mesh_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("mesh", "triangles on the surface, every vertex exact");
   arguments->surface.add_to(command);
   command.add_option("--cell", arguments->cell, "grid cell size: about the length of an edge (default: chosen)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       .add_option("--out", arguments->out,
                   "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::mesh))

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
@@ -188,23 +189,22 @@ Run add_path_command(CLI::App& app) {
                      "pairs p1,...,pd,q1,...,qd, one a line; writes length,error,converged,locally_shortest,status");
   PathOptions& options = arguments->options;
   command.add_option("--tol", options.tolerance, "relative length tolerance")
-      ->check(CLI::Range(1e-13, 1e-3))
+      ->check(number_between(1e-13, 1e-3))
       ->capture_default_str();
-  command.add_option("--cell", options.cell, "grid cell size (default: chosen)")->check(CLI::PositiveNumber);
+  command.add_option("--cell", options.cell, "grid cell size (default: chosen)")->check(positive_number());
   command
       .add_option("--method", options.method,
                   "newton: machine precision; flow: the paper's curvature flow; grid: no correction")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, CorrectionMethod>{
-          {"newton", CorrectionMethod::newton}, {"flow", CorrectionMethod::flow}, {"grid", CorrectionMethod::grid}}));
+      ->transform(one_of<CorrectionMethod>(
+          {{"newton", CorrectionMethod::newton}, {"flow", CorrectionMethod::flow}, {"grid", CorrectionMethod::grid}}));
   command.add_option("--march", options.march, "distances on the cells: convergent, axis (the paper's) or dijkstra")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, MarchMethod>{
-          {"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+      ->transform(one_of<MarchMethod>(
+          {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
   command.add_option("--grid", options.grid, "cells by subdivide (Algorithm I) or grow (Algorithm II)")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, GridMethod>{{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
+      ->transform(one_of<GridMethod>({{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
   command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(CLI::PositiveNumber);
+      ->check(positive_number());
+  command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number());
   command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
   command
       .add_option("--out", arguments->out,
