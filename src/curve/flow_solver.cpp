@@ -16,6 +16,7 @@ constexpr double kExplicitStep = 0.25;  // Delta t / Delta h^2; stable below 1/2
 constexpr double kEvenness = 1e-7;      // of an interval, from one to the next
 constexpr Index kMaxIdle = 30;
 constexpr double kMaxOffSurface = 0.25;  // of an interval: a step that leaves the surface farther is too long
+constexpr double kOffSurface = 1e-9;     // of an interval, at rest
 constexpr int kMaxProjectionSteps = 8;
 constexpr double kRankMargin = 1e-10;
 
@@ -192,7 +193,7 @@ FlowState FlowSolver::relax(Points start, double bound) {
     const double noise = curvature_noise(on_surface, mean);
     const double rounding = std::numeric_limits<double>::epsilon() * on_surface.cwiseAbs().maxCoeff();
     if (state.curvature <= std::max(bound, noise) && repose.unevenness <= std::max(kEvenness, 64 * rounding / mean) &&
-        off <= std::max(1e-3 * bound * mean * mean, 64 * rounding)) {
+        off <= std::max(kOffSurface * mean, 64 * rounding)) {
       state.converged = true;
       break;
     }
