@@ -9,6 +9,7 @@ namespace taut::detail {
 namespace {
 
 constexpr int kMaxSteps = 60;
+constexpr double kNearEnough = 1e-5;  // of the radius
 
 /// -(J Pi)^+ F with Pi = I - a a^T. `gradients`: d x k.
 Vector step_in_plane(const Eigen::Ref<const Eigen::MatrixXd>& gradients, const VectorIn& value, const VectorIn& axis) {
@@ -80,6 +81,8 @@ Eigen::Array<bool, Eigen::Dynamic, 1> project_in_planes(Evaluator& evaluator, In
     }
     active = std::move(still);
   }
+  // Where noise of F ends the iteration early, a point this near is on the surface all the same.
+  for (Index j = 0; j < n; ++j) found(j) = found(j) || residual(j) <= kNearEnough * radius(j);
   return found;
 }
 

@@ -22,8 +22,8 @@ struct FlowOptions {
   /// Balance parameter of (4), > 0: how fast nodes are drawn to the surface, in units of 1 / Delta h^2, so that it
   /// means the same whatever the scale of F and of the model. At most 4 with explicit steps.
   double beta = 1;
-  /// Stop when the discrete |k_g| is below it at every node, 1 / model units. 0 = 1e-6 / length (or what rounding
-  /// allows).
+  /// Stop when the discrete |k_g| is below it at every node, 1 / model units. 0 = 1e-6 / length; where the noise of F
+  /// forbids that, the least it allows, at most 1e-4 / length (a relative length error of some 1e-8).
   double curvature_bound = 0;
   int max_steps = 1000000;
   FlowTimeStep time_step = FlowTimeStep::linearly_implicit;

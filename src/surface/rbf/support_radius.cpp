@@ -56,16 +56,18 @@ double default_support_radius(const Points& points, const Points& normals, const
   // On samples strewn at random the largest hole has a radius of 1.5 to 2 mean spacings, on real scans and on meshes of
   // uneven density up to 2.1 times the 95 % quantile of the spacing (measured on 18 models).
   constexpr double kHoles = 2.2;
-  constexpr double kHalfGap = 0.45;
+  // Between two such sheets F changes sign once more. That false sheet joins the true ones round their edges and comes
+  // within 0.4 gaps of them (measured on rolls): farther out it is no surface.
+  constexpr double kShareOfGap = 0.38;
   const Vector spacing = local_spacing(points, tree);
   const double middle = quantile(spacing, 0.5);
   const double radius = kHoles * quantile(spacing, 0.95);
-  const std::vector<double> sheets = gaps(points, normals, tree, 1.5 * middle, radius / kHalfGap);
+  const std::vector<double> sheets = gaps(points, normals, tree, 1.5 * middle, radius / kShareOfGap);
   const Index num_probes = std::min<Index>(points.cols(), kMaxProbes);
   // Measured: 0 to 4 % of a solid's or a face's samples see such a sheet, 50 % and more of a roll's.
   if (static_cast<double>(sheets.size()) < 0.1 * static_cast<double>(num_probes)) return radius;
   const double gap = quantile(Eigen::Map<const Vector>(sheets.data(), static_cast<Index>(sheets.size())), 0.05);
-  return std::min(radius, std::max(kHalfGap * gap, middle));
+  return std::min(radius, std::max(kShareOfGap * gap, middle));
 }
 
 }  // namespace taut::detail
