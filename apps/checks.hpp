@@ -11,33 +11,35 @@
 
 namespace taut::app {
 
-// Checks of option values. Each says in one line what may be written there, and shows it in --help.
+// Checks of option values. Each says what may be written there, in its error and in --help.
 
-/// A finite number in [least, most]; `rule` says so in words.
-[[nodiscard]] inline CLI::Validator number_check(double least, double most, const std::string& rule) {
+/// A finite number in [least, most]; `rule` says so in words, and `hint` beside the option in --help.
+[[nodiscard]] inline CLI::Validator number_check(double least, double most, const std::string& rule,
+                                                 const std::string& hint) {
   const auto check = [least, most, rule](std::string& text) -> std::string {
     double value = 0;
     const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
     return is_number && value >= least && value <= most ? "" : fmt::format("'{}' is not {}", text, rule);
   };
-  return CLI::Validator(check, rule);
+  return CLI::Validator(check, hint);
 }
 
 [[nodiscard]] inline CLI::Validator any_number() {
-  return number_check(std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(), "a finite number");
+  return number_check(std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max(), "a finite number", "");
 }
 
 [[nodiscard]] inline CLI::Validator positive_number() {
   return number_check(std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max(),
-                      "a positive number");
+                      "a positive number", "> 0");
 }
 
 [[nodiscard]] inline CLI::Validator number_not_below_zero() {
-  return number_check(0, std::numeric_limits<double>::max(), "zero or a positive number");
+  return number_check(0, std::numeric_limits<double>::max(), "zero or a positive number", ">= 0");
 }
 
 [[nodiscard]] inline CLI::Validator number_between(double least, double most) {
-  return number_check(least, most, fmt::format("a number from {} to {}", least, most));
+  return number_check(least, most, fmt::format("a number from {} to {}", least, most),
+                      fmt::format("{}..{}", least, most));
 }
 
 /// One of these names, which stand for values of an enumeration.

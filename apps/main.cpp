@@ -58,6 +58,7 @@ ExitCode guarded(const Run& run) {
   try {
     const ExitCode code = run();
     clear_progress();
+    if (!std::cout.flush()) return fail(kBadInput, "stdout cannot be written to the end; make room or write elsewhere");
     return code;
   } catch (const UsageError& e) {
     return fail(kWrongUsage, e.what());

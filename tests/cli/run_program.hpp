@@ -28,16 +28,18 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Runs the taut program with these arguments and waits for it; after `limit` it is killed.
-inline ProgramResult run_taut(const std::vector<std::string>& arguments,
-                              std::chrono::seconds limit = std::chrono::seconds(60)) {
+/// Runs the taut program with these arguments and waits for it; after a minute it is killed. `device`, if given, is
+/// where its stdout goes, and is not read back.
+inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "") {
+  constexpr std::chrono::seconds limit(60);
   const TempFolder folder;
   const std::string out = (folder.path() / "out").string();
   const std::string err = (folder.path() / "err").string();
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (device.empty() ? out : device).c_str(), O_WRONLY | O_CREAT,
+                                   0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
   std::vector<std::string> words = {TAUT_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
@@ -61,7 +63,7 @@ inline ProgramResult run_taut(const std::vector<std::string>& arguments,
   }
   if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
   if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
-  result.out = file_bytes(out);
+  if (device.empty()) result.out = file_bytes(out);
   result.err = file_bytes(err);
   return result;
 }

@@ -267,6 +267,19 @@ TEST(BadInputs, EachEndsWithItsCodeAndOneLine) {
   }
 }
 
+TEST(BadInputs, AFullDiskIsNoticed) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const std::vector<std::string> question = {"path", "x^2+y^2+z^2=1", "--from", "1,0,0", "--to", "0,1,0"};
+  const test::ProgramResult to_stdout = run_taut(with(question, {"--json"}), "/dev/full");
+  EXPECT_EQ(to_stdout.exit_code, kBadInput);
+  EXPECT_NE(to_stdout.err.find("taut: stdout cannot be written"), std::string::npos) << to_stdout.err;
+  const TempFolder folder;
+  std::filesystem::create_symlink("/dev/full", folder.path() / "path.json");
+  const test::ProgramResult to_file = run_taut(with(question, {"--out", (folder.path() / "path.json").string()}));
+  EXPECT_EQ(to_file.exit_code, kBadInput);
+  EXPECT_NE(to_file.err.find("make room on the disk"), std::string::npos) << to_file.err;
+}
+
 TEST(BadInputs, BadLinesOfABatchAreAnsweredInPlace) {
   const TempFolder folder;
   const auto pairs = folder.write("pairs.csv",
