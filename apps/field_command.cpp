@@ -27,6 +27,7 @@ struct FieldArguments {
   std::string at;
   FieldOptions options;
   double tolerance = 1e-9;
+  PictureArguments picture;
   std::vector<std::string> out;
 };
 
@@ -108,7 +109,8 @@ ExitCode run(const FieldArguments& arguments) {
                                    .mesh = field.mesh,
                                    .marks = sources,
                                    .facts = facts,
-                                   .title = "Distances on " + arguments.surface.surface});
+                                   .title = "Distances on " + arguments.surface.surface,
+                                   .up = arguments.picture.up});
   std::cout << facts_text(facts);
   return kDone;
 }
@@ -134,6 +136,7 @@ Run add_field_command(CLI::App& app) {
   command.add_option("--march", arguments->options.march, "convergent, axis (the paper's) or dijkstra")
       ->transform(one_of<MarchMethod>(
           {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+  arguments->picture.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

@@ -21,6 +21,7 @@ struct MeshArguments {
   CommonArguments common;
   SurfaceArguments surface;
   double cell = 0;
+  PictureArguments picture;
   std::vector<std::string> out;
 };
 
@@ -32,8 +33,12 @@ ExitCode run(const MeshArguments& arguments) {
   clear_progress();
   const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
                                         {"triangles", grouped(mesh.faces.cols())}};
-  write_mesh_files(arguments.out,
-                   {.surface = surface, .mesh = mesh, .marks = {}, .facts = facts, .title = arguments.surface.surface});
+  write_mesh_files(arguments.out, {.surface = surface,
+                                   .mesh = mesh,
+                                   .marks = {},
+                                   .facts = facts,
+                                   .title = arguments.surface.surface,
+                                   .up = arguments.picture.up});
   std::cout << facts_text(facts);
   return kDone;
 }
@@ -51,6 +56,7 @@ Run add_mesh_command(CLI::App& app) {
                   "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::mesh))
       ->required()
       ->allow_extra_args(false);
+  arguments->picture.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

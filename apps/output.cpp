@@ -1,6 +1,9 @@
 #include "output.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -45,6 +48,7 @@ Scene path_scene(const PathOutput& output, const Context& context) {
   Scene scene;
   scene.title = output.title;
   scene.facts = output.facts;
+  scene.up = output.up;
   const bool single = output.paths.size() == 1;
   for (const PathResult* path : output.paths) {
     scene.paths.push_back({.points = path->points, .label = "geodesic", .length = path->length});
@@ -63,6 +67,14 @@ Scene path_scene(const PathOutput& output, const Context& context) {
 }
 
 }  // namespace
+
+void PictureArguments::add_to(CLI::App& command) {
+  command
+      .add_option_function<std::string>(
+          "--up", [this](const std::string& axis) { up = Eigen::Vector3d::Unit(axis[0] - 'x'); },
+          "axis that points up in pictures: x, y or z (default z)")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+}
 
 std::string known_outputs(OutputKind kind) {
   return kind == OutputKind::path ? fmt::format("{}", fmt::join(kPathOutputs, " "))
@@ -115,6 +127,7 @@ void write_mesh_files(const std::vector<std::string>& files, const MeshOutput& o
       scene.emplace();
       scene->title = output.title;
       scene->facts = output.facts;
+      scene->up = output.up;
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
       for (Index j = 0; j < output.marks.cols(); ++j) {

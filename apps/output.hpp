@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -21,12 +22,19 @@ enum class OutputKind { path, mesh };
 /// Throws UsageError when a file's extension cannot hold this kind: said before any work is done.
 void check_outputs(const std::vector<std::string>& files, OutputKind kind);
 
+/// --up: which axis points up in pictures.
+struct PictureArguments {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  void add_to(CLI::App& command);
+};
+
 struct PathOutput {
   const Surface& surface;
   std::vector<const PathResult*> paths;
   nlohmann::ordered_json json;
   std::vector<SceneFact> facts;  ///< for people, shown beside pictures
   std::string title;
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// Writes the paths to each file, by extension.
@@ -38,6 +46,7 @@ struct MeshOutput {
   Points marks;  ///< 3 x m: points to show, such as the sources of a field
   std::vector<SceneFact> facts;
   std::string title;
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// Writes the mesh, with its vertex scalars where the format has room for them, to each file, by extension.

@@ -29,6 +29,7 @@ struct PathArguments {
   std::string to_file;
   std::string pairs;
   PathOptions options;
+  PictureArguments picture;
   std::vector<std::string> out;
   bool json = false;
 };
@@ -58,10 +59,14 @@ ExitCode run_one(const PathArguments& arguments, const Surface& surface, const C
     std::cout << facts_text(facts);
   }
   if (result.points.cols() > 0) {
-    write_paths(
-        arguments.out,
-        {.surface = surface, .paths = {&result}, .json = json, .facts = facts, .title = arguments.surface.surface},
-        context);
+    write_paths(arguments.out,
+                {.surface = surface,
+                 .paths = {&result},
+                 .json = json,
+                 .facts = facts,
+                 .title = arguments.surface.surface,
+                 .up = arguments.picture.up},
+                context);
   } else {
     print_error(result.message);
     return exit_code(result.status);
@@ -118,7 +123,12 @@ ExitCode run_many(const PathArguments& arguments, const Surface& surface, const 
   const std::vector<SceneFact> facts = {{"paths", std::to_string(results.size())},
                                         {"time", fmt::format("{:.3g} s", total)}};
   write_paths(arguments.out,
-              {.surface = surface, .paths = drawn, .json = json, .facts = facts, .title = arguments.surface.surface},
+              {.surface = surface,
+               .paths = drawn,
+               .json = json,
+               .facts = facts,
+               .title = arguments.surface.surface,
+               .up = arguments.picture.up},
               context);
   return all_ok ? kDone : kSomeLinesFailed;
 }
@@ -210,6 +220,7 @@ Run add_path_command(CLI::App& app) {
       .add_option("--out", arguments->out,
                   "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::path))
       ->allow_extra_args(false);
+  arguments->picture.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nanoflann.hpp>
 #include <numbers>
 #include <vector>
+
+#include "surface/rbf/kd_tree.hpp"
 
 namespace taut::detail {
 namespace {
@@ -15,29 +16,23 @@ constexpr std::array<double, 5> kCellsPerSide = {128, 32, 16, 9, 6};
 /// A cloud of many points does not make the cells finer than this.
 constexpr double kMostCellsPerSide = 160;
 /// Distance to the k-th neighbour tells the density; the nearest alone is fooled by overlapping scans.
-constexpr int kNeighbour = 6;
+constexpr Index kNeighbour = 6;
 constexpr Index kProbes = 400;
 
 /// Typical distance between neighbouring samples of a surface (two-dimensional for d = 3): on average k of them lie
 /// within r_k, so the area a sample stands for is pi r_k^2 / k.
 double sample_spacing(const Points& points) {
-  using Tree = nanoflann::KDTreeEigenMatrixAdaptor<Points, Eigen::Dynamic, nanoflann::metric_L2_Simple, false>;
-  const Index n = points.cols();
-  const auto wanted = static_cast<std::size_t>(std::min<Index>(kNeighbour + 1, n));
-  const Tree tree(static_cast<int>(points.rows()), std::cref(points), 10);
+  const KdTree tree(points);
   std::vector<double> radii;
-  std::vector<Index> index(wanted);
-  std::vector<double> squared(wanted);
-  const Index step = std::max<Index>(1, n / kProbes);
-  for (Index j = 0; j < n; j += step) {
-    nanoflann::KNNResultSet<double, Index> found(wanted);
-    found.init(index.data(), squared.data());
-    tree.index->findNeighbors(found, points.col(j).data(), nanoflann::SearchParams());
-    radii.push_back(std::sqrt(squared.back()));
+  std::vector<Neighbour> nearest;
+  const Index step = std::max<Index>(1, points.cols() / kProbes);
+  for (Index j = 0; j < points.cols(); j += step) {
+    tree.nearest(points.col(j).data(), kNeighbour + 1, nearest);  // the first one is the sample itself
+    radii.push_back(std::sqrt(nearest.back().squared_distance));
   }
   const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
   std::nth_element(radii.begin(), middle, radii.end());
-  return *middle * std::sqrt(std::numbers::pi / static_cast<double>(wanted - 1));
+  return *middle * std::sqrt(std::numbers::pi / kNeighbour);
 }
 
 }  // namespace
