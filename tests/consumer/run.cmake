@@ -1,3 +1,4 @@
+cmake_minimum_required(VERSION 3.25)
 # Installs the build under test to a scratch prefix, builds the consumer against it and runs it.
 # Variables: BUILD_DIR, SOURCE_DIR (this folder), SCRATCH, GENERATOR, CXX_FLAGS, CXX
 file(REMOVE_RECURSE ${SCRATCH})
