@@ -12,7 +12,9 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
   }
   detail::CellLevels levels(surface, options.grid, options.cell, context);
   levels.prepare(Points(surface.dim(), 0));
-  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(0, Points(surface.dim(), 0)).grid(), {}, context);
+  // Cells chosen for marching are too coarse to look at.
+  const int level = options.cell > 0 ? 0 : 1;
+  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(level, Points(surface.dim(), 0)).grid(), {}, context);
   if (mesh.faces.cols() == 0)
     throw EmptySurface("the surface has no piece that these cells can show; try a smaller one");
   return mesh;
