@@ -7,8 +7,9 @@
 
 namespace taut::detail {
 
-/// Bits of a coordinate that choose the place inside a block of cells. 2^4 cells share a block, whose slots share a cache
-/// line, so that looking up the neighbours of a cell touches few lines; larger blocks fill the table too unevenly.
+/// Bits of a coordinate that choose the place inside a block of cells. 2^4 cells share a block, whose slots share a
+/// cache line, so that looking up the neighbours of a cell touches few lines; larger blocks fill the table too
+/// unevenly.
 constexpr int block_bits(Index dim, Index axis) {
   if (dim == 1) return axis == 0 ? 4 : 0;
   if (dim == 2) return 2;

@@ -24,6 +24,8 @@ struct Expected {
   Eigen::Vector3d extent;
 };
 
+void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.file; }
+
 class SharedData : public testing::TestWithParam<Expected> {
  protected:
   void SetUp() override {
