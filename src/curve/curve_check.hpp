@@ -22,16 +22,21 @@ struct CurveCheck {
   double length_error = 0;  ///< model units
   double off_surface = 0;   ///< max |J^+ F|
   double geodesic_curvature = 0;
-  double curvature = 0;               ///< sup |x''|: to judge the residual by
-  bool regular = true;                ///< J has full rank, F is finite at every check point
-  double weakest_gradient = 0;        ///< min over max of the smallest |grad F| along the curve
-  std::vector<double> element_error;  ///< length error made in each element
-  std::vector<double> element_off;    ///< max |J^+ F| in each element
+  double curvature = 0;         ///< sup |x''|: to judge the residual by
+  double corner = 0;            ///< largest jump of the unit tangent from element to element: a crease, once converged
+  double turning = 0;           ///< int |k_g| ds and the jumps: how much the curve bends within the surface, radians
+  bool regular = true;          ///< J has full rank, F is finite at every check point
+  double weakest_gradient = 0;  ///< min over max of the smallest |grad F| along the curve
+  std::vector<double> element_error;   ///< length error made in each element
+  std::vector<double> element_corner;  ///< largest jump at the ends of each element
+  std::vector<double> element_off;     ///< max |J^+ F| in each element
 };
 
 template <int D, int K>
 class CurveChecker {
  public:
+  static constexpr double kCorner = 0.1;  // radians
+
   using VectorD = Eigen::Matrix<double, D, 1>;
   using VectorK = Eigen::Matrix<double, K, 1>;
 
@@ -65,6 +70,15 @@ class CurveChecker {
       firsts_.middleCols(e * checks, checks).noalias() = local_.lazyProduct(scale * element.check_first);
       seconds_.middleCols(e * checks, checks).noalias() = local_.lazyProduct((scale * scale) * element.check_second);
     }
+    const int p = kernel.degree();
+    jump_.resize(d_, m);
+    jump_.col(0).setZero();
+    for (Index e = 0; e < m; ++e) {  // x' at both ends of element e
+      const double scale = 2 / kernel.lengths()[static_cast<std::size_t>(e)];
+      local_ = x.middleCols(e * p, n).colwise() - x.col(e * p);
+      if (e > 0) jump_.col(e).noalias() += scale * local_.lazyProduct(element.derivative.row(0).transpose());
+      if (e + 1 < m) jump_.col(e + 1).noalias() = -scale * local_.lazyProduct(element.derivative.row(p).transpose());
+    }
     evaluated_ += m * checks;
     evaluator.evaluate({.n = m * checks, .x = points_.data(), .value = value_.data(), .jacobian = jacobian_.data()});
     gather(kernel, check);
@@ -79,18 +93,30 @@ class CurveChecker {
     check.element_error.assign(static_cast<std::size_t>(m), 0.0);
     check.element_off.assign(static_cast<std::size_t>(m), 0.0);
     check.regular = true;
-    check.off_surface = check.geodesic_curvature = check.curvature = 0;
+    check.element_corner.assign(static_cast<std::size_t>(m), 0.0);
+    check.off_surface = check.geodesic_curvature = check.curvature = check.corner = check.turning = 0;
     double weakest = std::numeric_limits<double>::infinity();
     double strongest = 0;
     double energy = 0;
     double correction = 0;  // int mu F
     double remainder = 0;   // of the energy, quadratic in the error
-    double quadrature = 0;
     for (Index e = 0; e < m; ++e) {
       const double half = kernel.lengths()[static_cast<std::size_t>(e)] / 2;
       const double response = half * half / (p * (p + 1));
       double element_remainder = 0;
       double element_correction = 0;
+      // A kink between elements is part of the residual; a large one is a corner, which the path may yet slide along.
+      const double bend = jump_.col(e).squaredNorm();
+      element_remainder += response / half * bend / 2;
+      if (bend > kCorner * kCorner) element_remainder += half * bend / 4;
+      const double kink = std::sqrt(bend);
+      check.element_corner[static_cast<std::size_t>(e)] = kink;
+      if (e > 0) {
+        double& before = check.element_corner[static_cast<std::size_t>(e - 1)];
+        before = std::max(before, kink);
+      }
+      check.turning += kink;
+      check.corner = std::max(check.corner, kink);
       double& off = check.element_off[static_cast<std::size_t>(e)];
       for (int g = 0; g < checks; ++g) {
         const Index j = e * checks + g;
@@ -116,11 +142,12 @@ class CurveChecker {
         const double speed = first_.squaredNorm();
         check.curvature = std::max(check.curvature, second_.norm() / speed);
         tangential_ -= first_ * (tangential_.dot(first_) / speed);
-        check.geodesic_curvature = std::max(check.geodesic_curvature, tangential_.norm() / speed);
+        const double bending = tangential_.norm() / speed;
+        check.geodesic_curvature = std::max(check.geodesic_curvature, bending);
+        check.turning += weight * bending * std::sqrt(speed);
       }
       check.off_surface = std::max(check.off_surface, off);
       correction += element_correction;
-      quadrature += std::abs(element_correction);
       remainder += element_remainder;
       check.element_error[static_cast<std::size_t>(e)] = element_remainder + std::abs(element_correction);
     }
@@ -129,7 +156,6 @@ class CurveChecker {
     const double speed = check.length / kernel.period();
     const double to_length = speed > 0 ? 1 / speed : 1;  // dL = dE / speed
     for (double& error : check.element_error) error *= to_length;
-    (void)quadrature;
     check.length_error = to_length * (remainder + std::abs(correction));
     check.weakest_gradient = strongest > 0 ? weakest / strongest : 0;
   }
@@ -139,7 +165,7 @@ class CurveChecker {
   TangentFrame<D, K> frame_;
   VectorK scratch_;
   VectorD first_, second_, step_, tangential_;
-  Eigen::Matrix<double, D, Eigen::Dynamic> local_, points_, firsts_, seconds_;
+  Eigen::Matrix<double, D, Eigen::Dynamic> local_, points_, firsts_, seconds_, jump_;
   Eigen::Matrix<double, K, Eigen::Dynamic> value_;
   Eigen::MatrixXd jacobian_;
   Index evaluated_ = 0;

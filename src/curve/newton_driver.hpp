@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "curve/conjugate_point.hpp"
 #include "curve/curve_check.hpp"
 #include "curve/newton_backend.hpp"
 #include "curve/newton_kernel.hpp"
@@ -40,21 +41,24 @@ class NewtonDriver : public NewtonSolver::Backend {
     const double length = polyline_length(path);
     NewtonResult result;
     if (path.cols() < 2 || length <= 1e-15 * scale_) return of_a_point(start);
-    Relaxation outcome = solve_coarse(path, length);
-    if (outcome == Relaxation::converged || outcome == Relaxation::saddle || outcome == Relaxation::stalled) {
-      outcome = solve_fine(result);
-    } else if (outcome == Relaxation::collapsed && path.col(0) == path.col(path.cols() - 1)) {
-      return of_a_point(start);
-    } else {
-      checker_.inspect(*evaluator_, kernel_, check_);
+    Relaxation outcome = Relaxation::stalled;
+    for (const double turn : {0.6, 0.2}) {  // a second, finer attempt where the first got lost
+      outcome = solve_coarse(path, length, turn);
+      if (outcome == Relaxation::collapsed && path.col(0) == path.col(path.cols() - 1)) return of_a_point(start);
+      if (outcome == Relaxation::converged || outcome == Relaxation::saddle || outcome == Relaxation::stalled) {
+        outcome = solve_fine();
+      } else {
+        checker_.inspect(*evaluator_, kernel_, check_);
+      }
+      if (outcome != Relaxation::stalled && outcome != Relaxation::off_surface) break;
+      if (kernel_.num_iterations() >= options_.max_iterations) break;
     }
     finish(start, outcome, result);
     return result;
   }
 
  private:
-  static constexpr double kWideTurn = 1.0;    // radians between nodes beyond which a coarse curve is not trusted
-  static constexpr double kCoarseTurn = 0.6;  // ... beyond which it is refined once it is relaxed
+  static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
   static constexpr int kMaxCycles = 14;
 
@@ -71,7 +75,7 @@ class NewtonDriver : public NewtonSolver::Backend {
 
   // The coarse curve.
 
-  Relaxation solve_coarse(const Points& path, double length) {
+  Relaxation solve_coarse(const Points& path, double length, double coarse_turn) {
     std::vector<double> arcs(kCoarseSegments + 1);
     for (Index i = 0; i <= kCoarseSegments; ++i) {
       arcs[static_cast<std::size_t>(i)] = length * static_cast<double>(i) / kCoarseSegments;
@@ -84,14 +88,15 @@ class NewtonDriver : public NewtonSolver::Backend {
     for (int cycle = 0; cycle < 12; ++cycle) {
       const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
       if (outcome != Relaxation::stalled) return outcome;
-      if (!refine_coarse(kWideTurn, &path, arcs)) break;
+      if (!refine_coarse(options_.leave_saddles ? kWideTurn : 0.25, &path, arcs)) break;
     }
+    if (!options_.leave_saddles)
+      return Relaxation::converged;  // a saddle must not be slid off: straight to high degree
     goal.max_iterations = std::min(60, options_.max_iterations);
-    goal.minimum = options_.leave_saddles;
     for (int cycle = 0; cycle < 12; ++cycle) {
       const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
       if (outcome != Relaxation::converged) return outcome;
-      if (!refine_coarse(kCoarseTurn, nullptr, arcs)) break;
+      if (!refine_coarse(coarse_turn, nullptr, arcs)) break;
       goal.max_iterations = std::min(60, std::max(0, options_.max_iterations - kernel_.num_iterations()));
     }
     return Relaxation::converged;
@@ -105,7 +110,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       const auto a = kernel_.tangents(e);
       const auto b = kernel_.tangents(e + 1);
       const double lost = static_cast<double>(a.cols()) - (b.transpose() * a).squaredNorm();
-      turning_[static_cast<std::size_t>(e)] = std::sqrt(std::max(0.0, lost));
+      turning_[static_cast<std::size_t>(e)] = std::asin(std::sqrt(std::clamp(lost, 0.0, 1.0)));
       if (flipped(e)) turning_[static_cast<std::size_t>(e)] = 2;
     }
     if (m >= 3) {
@@ -126,13 +131,17 @@ class NewtonDriver : public NewtonSolver::Backend {
     std::vector<double> lengths;
     std::vector<double> new_arcs{0.0};
     const bool by_arc = path != nullptr;
+    if (by_arc) {  // the path's own bends count as well: the normal may be the same again after a full turn
+      const std::vector<double> strays = straying(*path, arcs);
+      for (std::size_t e = 0; e < strays.size(); ++e) turning_[e] = std::max(turning_[e], 8 * strays[e]);
+    }
     Nodes nodes(kernel_.nodes().rows(), 2 * m + 1);
     Index count = 0;
     nodes.col(count++) = kernel_.nodes().col(0);
     for (Index e = 0; e < m; ++e) {
       const double h = lengths_[static_cast<std::size_t>(e)];
       const bool cut = turning_[static_cast<std::size_t>(e)] > limit && h > shortest &&
-                       static_cast<Index>(lengths.size()) < 4 * options_.max_elements;
+                       static_cast<Index>(lengths.size()) < options_.max_elements;
       if (cut) {
         nodes.col(count++) = (kernel_.nodes().col(e) + kernel_.nodes().col(e + 1)) / 2;
         lengths.insert(lengths.end(), 2, h / 2);
@@ -158,7 +167,10 @@ class NewtonDriver : public NewtonSolver::Backend {
   // The fine curve.
 
   // The turn of the normal an element of degree p may see at this tolerance; measured (docs/newton.md).
-  [[nodiscard]] double turn_allowed(int p) const { return 0.7 * std::pow(options_.tolerance / 1e-12, 1.0 / (2 * p)); }
+  [[nodiscard]] double turn_allowed(int p) const {
+    const double at_1e12 = options_.leave_saddles ? 0.7 : 0.35;  // a saddle wants a start that is resolved
+    return std::min(1.2, at_1e12 * std::pow(options_.tolerance / 1e-12, 1.0 / (2 * p)));
+  }
 
   [[nodiscard]] int first_degree() const {
     const Index q = surface_.dim() - surface_.codim();
@@ -223,15 +235,16 @@ class NewtonDriver : public NewtonSolver::Backend {
 
   [[nodiscard]] double surface_tolerance() const { return 3e-3 * std::sqrt(options_.tolerance); }  // relative to length
 
-  Relaxation solve_fine(NewtonResult& /*result*/) {
+  Relaxation solve_fine() {
     start_fine(first_degree());
     Relaxation outcome = Relaxation::converged;
     double before = std::numeric_limits<double>::infinity();
     int slow = 0;
+    int stalls = 0;
     nonsmooth_ = false;
     for (int cycle = 0; cycle < kMaxCycles; ++cycle) {
       RelaxationGoal goal{.energy = 0.02 * options_.tolerance,
-                          .off_surface = 1e-2 * surface_tolerance() * kernel_.period(),
+                          .off_surface = std::max(1e-2 * surface_tolerance() * kernel_.period(), 1e-15 * scale_),
                           .max_iterations = options_.max_iterations - kernel_.num_iterations(),
                           .minimum = options_.leave_saddles};
       outcome = kernel_.relax(*evaluator_, goal, *context_);
@@ -241,7 +254,8 @@ class NewtonDriver : public NewtonSolver::Backend {
       if (!check_.regular) return Relaxation::singular;
       const double error = check_.length_error;
       if (outcome == Relaxation::converged && accurate(error) && kernel_.resolved()) break;
-      if (outcome == Relaxation::stalled && kernel_.num_iterations() >= options_.max_iterations) break;
+      if (outcome == Relaxation::stalled && (++stalls > 2 || kernel_.num_iterations() >= options_.max_iterations))
+        break;
       if (error > 0.1 * before) {
         nonsmooth_ = true;
         if (error > 0.9 * before && ++slow >= 4) break;
@@ -253,7 +267,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   }
 
   [[nodiscard]] bool accurate(double error) const {
-    return error <= 0.5 * options_.tolerance * check_.length &&
+    return error <= 0.5 * options_.tolerance * check_.length && check_.corner <= CurveChecker<D, K>::kCorner &&
            check_.off_surface <= surface_tolerance() * check_.length + 1e-15 * scale_;
   }
 
@@ -272,6 +286,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       const double by_off = std::pow(check_.element_off[e] / off_share, 1.0 / (p + 1));
       const double wanted = std::max(by_error, by_off);
       if (wanted > 1) pieces_[e] = static_cast<int>(std::clamp(std::ceil(wanted), 2.0, 4.0));
+      if (check_.element_corner[e] > CurveChecker<D, K>::kCorner) pieces_[e] = std::max(pieces_[e], 2);
       if (lengths_[e] < 1e-7 * kernel_.period()) pieces_[e] = 1;
       any = any || pieces_[e] > 1;
       total += pieces_[e];
@@ -321,16 +336,39 @@ class NewtonDriver : public NewtonSolver::Backend {
   void finish(const PointsIn& start, Relaxation outcome, NewtonResult& result) {
     result.curve = SpectralCurve(kernel_.degree(), lengths_, kernel_.nodes());
     result.length = check_.length;
-    const double rounding = 4e-16 * check_.length + 2e-16 * scale_ * std::min(1.0, check_.curvature * check_.length);
-    result.length_error = check_.length_error + rounding;
+    result.length_error = check_.length_error + rounding();
+    if (outcome != Relaxation::converged) {  // what the next steps were expected to gain, and no claim beyond that
+      result.length_error += 4 * kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
+      result.length_error = std::max(result.length_error, 1e-6 * check_.length);
+    }
+    for (const double off : check_.element_off) {  // where the curve cuts a corner
+      if (off > surface_limit()) result.length_error += 2 * off;
+    }
     result.residual = {.surface = check_.off_surface, .geodesic_curvature = check_.geodesic_curvature};
     result.num_iterations = kernel_.num_iterations();
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
     result.index = kernel_.chain().num_negative();
     result.locally_shortest =
         outcome == Relaxation::converged && kernel_.resolved() && kernel_.chain().first_failing() < 0;
+    if (result.index > 0) {
+      if (const auto t = find_conjugate_point(kernel_, kernel_.chain().first_failing())) {
+        result.conjugate_at = *t * (check_.length / kernel_.period());
+      }
+    }
     const bool in_domain = sample(start, result);
     decide(outcome, in_domain, result);
+  }
+
+  // What the end points' own rounding does to the length, and ours: no tolerance asks for less.
+  [[nodiscard]] double rounding() const { return 4e-16 * check_.length + 2.2e-16 * scale_; }
+
+  // How far off the surface a good curve may be between its nodes, model units.
+  [[nodiscard]] double surface_limit() const { return 4 * surface_tolerance() * check_.length + 1e-14 * scale_; }
+
+  // Of x'' by rounding of the nodes.
+  [[nodiscard]] double curvature_noise() const {
+    const double shortest = *std::min_element(lengths_.begin(), lengths_.end());
+    return 4e-16 * scale_ * std::pow(kernel_.degree(), 4) / (shortest * shortest);
   }
 
   void decide(Relaxation outcome, bool in_domain, NewtonResult& result) const {
@@ -345,17 +383,26 @@ class NewtonDriver : public NewtonSolver::Backend {
       result.reason = "a geodesic that is not locally shortest, and no way down was found";
     } else if (outcome != Relaxation::converged) {
       result.reason = "the iteration stalled before it met the tolerance";
-    } else if (check_.off_surface > 4 * surface_tolerance() * check_.length + 1e-14 * scale_) {
+    } else if (kernel_.ends_off() > surface_limit()) {
+      result.reason = "an end of the path is not on the surface: project it first";
+    } else if (check_.off_surface > surface_limit()) {
       result.reason = "the curve leaves the surface between its nodes";
-    } else if (result.length_error > options_.tolerance * result.length &&
-               result.length_error > 1e-13 * result.length) {
+    } else if (check_.length_error > options_.tolerance * result.length) {
       result.reason = nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
                                  : "the tolerance was not met with the elements allowed";
+    } else if (check_.corner > CurveChecker<D, K>::kCorner) {
+      result.reason = "the curve has a corner: it crosses a crease of the surface";
+    } else if (check_.geodesic_curvature > 0.3 * std::max(check_.curvature, 1 / check_.length) + curvature_noise()) {
+      result.reason = "the curve bends within the surface: a crease?";
     } else if (!in_domain) {
       result.status = Status::left_domain;
       result.reason = "the curve leaves the domain of the surface";
     } else {
       result.status = Status::ok;
+    }
+    if (result.status ==
+        Status::not_converged) {  // straightening a bend of angle a in a path of length L gains up to a^2 L / 8
+      result.length_error = std::max(result.length_error, check_.turning * check_.turning * check_.length / 8);
     }
     if (result.status == Status::not_converged && check_.weakest_gradient < 1e-3) {
       result.status = Status::rank_deficient;

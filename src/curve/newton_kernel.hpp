@@ -116,7 +116,9 @@ class NewtonKernel {
   }
 
   /// Is every element alone positive definite: fine enough a mesh to tell minima by the pivots.
-  [[nodiscard]] bool resolved() const { return chain_.condensed(); }
+  [[nodiscard]] bool resolved() const { return resolved_; }
+  /// How far the ends are off the surface, model units.
+  [[nodiscard]] double ends_off() const { return ends_off_; }
   [[nodiscard]] bool regular_ends() const { return regular_ends_; }
   /// Fills and condenses the chain as it was at the last step, couplings to the ends of the curve included: what Jacobi
   /// fields are made of.
@@ -137,6 +139,7 @@ class NewtonKernel {
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
       linearise();
       definite_ = assemble_and_factor(true, true);
+      resolved_ = chain_.condensed();
       bool descend = true;  // towards a minimum: the energy has to fall
       bool negative = false;
       if (!definite_) {
@@ -153,17 +156,31 @@ class NewtonKernel {
         if (flat) return Relaxation::saddle;
       }
       form_step(y_);
-      if (flat && off_surface_ <= goal.off_surface) {
-        x_ = base_ + step_;
-        return Relaxation::converged;
+      if (flat) {
+        // Along a nearly neutral direction (conjugate ends) even a worthless step is long: then only go to the surface.
+        const double longest = step_.colwise().norm().maxCoeff();
+        if (off_surface_ <= goal.off_surface) {
+          x_ = base_;
+          if (longest * longest <= goal.off_surface * period_) x_ += step_;
+          return Relaxation::converged;
+        }
+        if (decrement_ <= 1e-2 * goal.energy * energy_) {
+          x_ = base_;
+          visit(evaluator);
+          if (!measure()) return Relaxation::singular;
+          continue;
+        }
       }
-      if (!search(evaluator, slope, !descend)) return flat ? Relaxation::converged : failure_;
+      if (search(evaluator, slope, !descend)) continue;
+      if (flat) return Relaxation::converged;
+      // Close to a conjugate point a Newton step can be too long to be of use; shortening still is.
+      if (!definite_ || !descend || !shorten(evaluator, goal)) return failure_;
     }
     return Relaxation::stalled;
   }
 
  private:
-  using Mat = Eigen::MatrixXd;
+  static constexpr double kMostTurn = 0.7;  // radians a node may move around its surface in one step
 
   // F, J (and second derivatives) at the nodes.
   void visit(Evaluator& evaluator) {
@@ -188,6 +205,11 @@ class NewtonKernel {
       Eigen::Map<const Eigen::Matrix<double, D, K>> gradients(jacobian_.col(j).data(), d_, k_);
       const bool regular = value_.col(j).allFinite() && frame_.compute(gradients);
       if (j == 0 || j + 1 == n) {  // an end may be a singular point: it does not move
+        if (j == 0) ends_off_ = 0;
+        if (regular) {
+          frame_.pseudo_inverse(value_.col(j), mu_scratch_, vector_);
+          ends_off_ = std::max(ends_off_, vector_.norm());
+        }
         regular_ends_ = (j == 0 || regular_ends_) && regular;
         if (regular) Eigen::Map<Eigen::Matrix<double, D, Q>>(tangents_.col(j).data(), d_, q_) = frame_.tangents();
         continue;
@@ -228,16 +250,18 @@ class NewtonKernel {
   }
 
   Relaxation project(Evaluator& evaluator) {
-    for (int round = 0; round < 30; ++round) {
+    for (int round = 0; round < 50; ++round) {
       visit(evaluator);
       if (!measure()) return Relaxation::singular;
-      double spacing = std::numeric_limits<double>::infinity();
       double worst = 0;
       for (Index j = 1; j + 1 < num_nodes(); ++j) {
-        const double near = (base_.col(j + 1) - base_.col(j - 1)).norm();
-        worst =
-            std::max(worst, (base_.col(j) - x_.col(j)).norm() / std::max(near, 1e-3 * period_ / double(num_nodes())));
-        spacing = std::min(spacing, near);
+        const auto e = static_cast<std::size_t>(std::min(j / degree(), num_elements() - 1));
+        const double near =
+            std::max((x_.col(j + 1) - x_.col(j - 1)).norm() / 2, lengths_[e] / (2 * static_cast<double>(degree())));
+        const double share = step_.col(j).norm() / near;
+        worst = std::max(worst, share);
+        // where F is far from linear (inside a thin body) a full step would fly away
+        if (share > 0.5) base_.col(j) = x_.col(j) + (0.5 / share) * step_.col(j);
       }
       if (worst <= 0.05) return Relaxation::converged;
       x_ = base_;
@@ -337,6 +361,22 @@ class NewtonKernel {
     return true;
   }
 
+  // One Sobolev step from where the last search began. False when that, too, leads nowhere.
+  bool shorten(Evaluator& evaluator, const RelaxationGoal& goal) {
+    x_ = trial_base_;
+    visit(evaluator);
+    if (!measure()) return false;
+    linearise();
+    if (!assemble_and_factor(false, true)) return false;
+    chain_.solve(y_.data());
+    const double slope = -right_.cwiseProduct(y_).sum();
+    decrement_ = 0.5 * std::abs(slope);
+    form_step(y_);
+    if (search(evaluator, slope, false)) return true;
+    if (decrement_ <= std::max(goal.energy, 4e-16) * trial_energy_) failure_ = Relaxation::converged;
+    return false;
+  }
+
   // step_ = T y.
   void form_step(const Reduced& y) {
     for (Index j = 1; j + 1 < num_nodes(); ++j) step_.col(j).noalias() = tangents(j) * y.col(j);
@@ -348,12 +388,13 @@ class NewtonKernel {
   // accepts any energy (a step towards a saddle).
   bool search(Evaluator& evaluator, double slope, bool free) {
     const double energy = energy_;
+    trial_energy_ = energy_;
     const double off = off_surface_;
     trial_base_ = base_;
     trial_step_ = step_;
     old_normal_ = normal_;
     const double longest = trial_step_.colwise().norm().maxCoeff();
-    double alpha = std::min(1.0, 0.25 * length() / std::max(longest, 1e-300));
+    double alpha = std::min({1.0, 0.25 * length() / std::max(longest, 1e-300), largest_step()});
     failure_ = Relaxation::stalled;
     for (int halving = 0; halving < 30; ++halving, alpha /= 2) {
       x_ = trial_base_ + alpha * trial_step_;
@@ -369,13 +410,33 @@ class NewtonKernel {
     return false;
   }
 
+  // The share of step_ over which the surface turns by at most kMostTurn under every node (k = 1; for more equations
+  // only same_sheet() watches).
+  [[nodiscard]] double largest_step() const {
+    double share = 1;
+    if (k_ > 1) return share;
+    for (Index j = 1; j + 1 < num_nodes(); ++j) {
+      Eigen::Map<const Eigen::Matrix<double, D, D>> hessian(hessian_.col(j).data(), d_, d_);
+      const double bend = std::abs(step_.col(j).dot(hessian * step_.col(j)));
+      const double reach = kMostTurn * jacobian_.col(j).norm() * step_.col(j).norm();
+      if (bend * share > reach) share = reach / bend;
+    }
+    return share;
+  }
+
   // A step s along the tangent plane leaves the surface by about s^2 / (2 radius). One that leaves it by much more, or
   // meets a turned normal, has lost the sheet it started on.
   [[nodiscard]] bool same_sheet(double alpha, double off) const {
     for (Index j = 1; j + 1 < num_nodes(); ++j) {
       const double moved = alpha * trial_step_.col(j).norm();
       if (step_.col(j).norm() > 0.3 * moved + 2 * off + 1e-12 * period_) return false;
-      if (k_ == 1 && normal_.col(j).dot(old_normal_.col(j)) < 0.3) return false;
+      if (k_ > 1) continue;
+      if (normal_.col(j).dot(old_normal_.col(j)) < 0.3) return false;
+      // Neighbours that drift apart around the surface would let the curve slip through it.
+      if (j > 1 && normal_.col(j).dot(normal_.col(j - 1)) < 0.2 &&
+          old_normal_.col(j).dot(old_normal_.col(j - 1)) >= 0.2) {
+        return false;
+      }
     }
     return true;
   }
@@ -427,7 +488,7 @@ class NewtonKernel {
 
   Nodes x_, base_, step_, force_, normal_, old_normal_, trial_base_, trial_step_;
   Eigen::Matrix<double, K, Eigen::Dynamic> value_, weight_;
-  Mat jacobian_, hessian_, tangents_, curvature_;
+  Eigen::MatrixXd jacobian_, hessian_, tangents_, curvature_;
   Reduced right_, y_, negative_;
   ElementChain<Q> chain_;
 
@@ -440,11 +501,14 @@ class NewtonKernel {
   Evaluator* evaluator_ = nullptr;
   double energy_ = 0;
   double decrement_ = 0;
+  double trial_energy_ = 0;  // where the last search began
   double off_surface_ = 0;
   int iterations_ = 0;
   Index evaluated_ = 0;
   bool definite_ = false;
+  bool resolved_ = false;
   bool regular_ends_ = false;
+  double ends_off_ = 0;
   Relaxation failure_ = Relaxation::stalled;
 };
 

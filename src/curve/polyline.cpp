@@ -42,6 +42,29 @@ Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs) {
   return result;
 }
 
+std::vector<double> straying(const PointsIn& nodes, const std::vector<double>& arcs) {
+  const Points ends = at_arc_lengths(nodes, arcs);
+  std::vector<double> result(arcs.size() - 1, 0.0);
+  std::vector<int> inside(result.size(), 0);
+  double arc = 0;
+  std::size_t i = 0;
+  for (Index j = 1; j + 1 < nodes.cols(); ++j) {
+    arc += (nodes.col(j) - nodes.col(j - 1)).norm();
+    while (i + 1 < result.size() && arc > arcs[i + 1]) ++i;
+    const auto e = static_cast<Index>(i);
+    const Vector chord = ends.col(e + 1) - ends.col(e);
+    const Vector offset = nodes.col(j) - ends.col(e);
+    const double squared = chord.squaredNorm();
+    const double along = squared > 0 ? std::clamp(offset.dot(chord) / squared, 0.0, 1.0) : 0;
+    result[i] = std::max(result[i], (offset - along * chord).norm() / (arcs[i + 1] - arcs[i]));
+    ++inside[i];
+  }
+  for (i = 0; i < result.size(); ++i) {
+    if (inside[i] < 4) result[i] = 0;
+  }
+  return result;
+}
+
 std::vector<double> equidistribute(const std::vector<double>& lengths, const std::vector<double>& density,
                                    Index count) {
   double whole = 0;

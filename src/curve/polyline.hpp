@@ -15,6 +15,11 @@ namespace taut::detail {
 /// Points at the given ascending arc lengths, d x n; the first and the last are the ends of the polyline exactly.
 [[nodiscard]] Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs);
 
+/// For each of the n - 1 intervals of arc length: how far the polyline strays from the chord there, as a share of the
+/// interval. An arc that turns by an angle a strays by a / 8. Zero where fewer than four nodes are inside: a zigzag of
+/// the nodes themselves does not count.
+[[nodiscard]] std::vector<double> straying(const PointsIn& nodes, const std::vector<double>& arcs);
+
 /// Cuts [0, 1] into `count` >= 1 intervals on which a density has equal integrals. `density[i] >= 0` holds on the
 /// interval of length `lengths[i]`; a floor of a quarter of its mean keeps intervals from growing without bound.
 /// Returns the lengths, scaled to the sum of `lengths`.

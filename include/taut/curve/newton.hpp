@@ -13,7 +13,7 @@ struct NewtonOptions {
   /// Relative length tolerance: done when length_error <= tolerance * length, 1e-13 .. 1e-3. Where rounding forbids it,
   /// `length_error` says what was reached.
   double tolerance = 1e-9;
-  int max_iterations = 200;  ///< Newton or shortening steps in all, >= 1
+  int max_iterations = 500;  ///< Newton or shortening steps in all, >= 1
   int max_elements = 4096;   ///< >= 1
   /// Go on from a geodesic that is not even locally shortest to one that is. If false, the result is the geodesic
   /// nearest to the start, minimum or not.

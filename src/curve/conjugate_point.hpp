@@ -1,0 +1,103 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "curve/newton_kernel.hpp"
+
+namespace taut::detail {
+
+/// Parameter t of the first conjugate point of a geodesic whose pivots failed first at element end `failing`: it lies
+/// in the element that begins there. Jacobi fields that vanish at the start solve the linearised equation A Y = 0
+/// element by element: with S the condensed blocks of an element and Phi the flux that arrives from the left,
+///   Phi + S_00 Y_0 + S_01 Y_1 = 0,   Phi' = S_10 Y_0 + S_11 Y_1.
+/// A conjugate point is where a combination of the q fields vanishes. None when the ends are singular points of the
+/// surface.
+template <int D, int K>
+std::optional<double> find_conjugate_point(NewtonKernel<D, K>& kernel, Index failing) {
+  constexpr int Q = NewtonKernel<D, K>::Q;
+  using Block = Eigen::Matrix<double, Q, Q>;
+  const Index q = kernel.tangents(0).cols();
+  const int p = kernel.degree();
+  if (failing < 0 || !kernel.regular_ends() || !kernel.condense_with_ends()) return std::nullopt;
+  auto& chain = kernel.chain();
+
+  Block here = Block::Zero(q, q);
+  Block flux = Block::Identity(q, q);
+  Block next = here;
+  double t = 0;
+  for (Index e = 0; e < failing; ++e) {
+    const auto s = chain.end_block(e);
+    const Block load = flux + s.topLeftCorner(q, q) * here;
+    next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(load);
+    flux = (s.bottomLeftCorner(q, q) * here + s.bottomRightCorner(q, q) * next).eval();
+    // Keep the fields independent: another basis of their span.
+    const double h = kernel.lengths()[static_cast<std::size_t>(e)];
+    Block gram = next.transpose() * next + h * h * (flux.transpose() * flux);
+    const Eigen::LLT<Block> factor(gram);
+    if (factor.info() != Eigen::Success) return std::nullopt;
+    here = factor.matrixU().template solve<Eigen::OnTheRight>(next);
+    flux = factor.matrixU().template solve<Eigen::OnTheRight>(flux).eval();
+    t += h;
+  }
+
+  // The fields inside the element, as polynomials in R^d: column b of node i is T_i Y_i e_b.
+  const auto s = chain.end_block(failing);
+  next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(flux + s.topLeftCorner(q, q) * here);
+  Eigen::MatrixXd nodal(q, kernel.num_nodes());
+  const Index d = kernel.nodes().rows();
+  Eigen::MatrixXd fields((p + 1) * d, q);  // rows of node i: i d ..
+  for (Index b = 0; b < q; ++b) {
+    nodal.col(failing * p) = here.col(b);
+    nodal.col(failing * p + p) = next.col(b);
+    chain.back_substitute(failing, nodal.data(), 0);
+    for (int i = 0; i <= p; ++i) {
+      fields.block(i * d, b, d, 1) = kernel.tangents(failing * p + i) * nodal.col(failing * p + i);
+    }
+  }
+  const ReferenceElement& element = kernel.element();
+  Eigen::VectorXd basis(p + 1);
+  const auto combine = [&](const Eigen::VectorXd& coefficients) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(d, q);
+    for (int i = 0; i <= p; ++i) sum += coefficients(i) * fields.middleRows(i * d, d);
+    return sum;
+  };
+  const auto smallest = [&](double xi, Eigen::VectorXd& direction) {
+    element.basis(xi, basis);
+    const Eigen::MatrixXd field = combine(basis);
+    const Eigen::SelfAdjointEigenSolver<Block> eigen(Block(field.transpose() * field));
+    direction = eigen.eigenvectors().col(0);
+    return eigen.eigenvalues()(0);
+  };
+
+  Eigen::VectorXd direction(q);
+  double best = -1;
+  double least = std::numeric_limits<double>::infinity();
+  constexpr int kSamples = 32;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double xi = -1 + 2.0 * i / kSamples;
+    const double value = smallest(xi, direction);
+    if (value < least) {
+      least = value;
+      best = xi;
+    }
+  }
+  for (int step = 0; step < 20; ++step) {  // Gauss-Newton for field(xi) direction = 0
+    (void)smallest(best, direction);
+    const Eigen::VectorXd value = combine(basis) * direction;
+    const Eigen::VectorXd slope = combine(element.derivative.transpose() * basis) * direction;
+    const double change = value.dot(slope) / slope.squaredNorm();
+    if (!std::isfinite(change)) break;
+    best = std::clamp(best - std::clamp(change, -0.2, 0.2), -1.0, 1.0);
+    if (std::abs(change) < 1e-13) break;
+  }
+  return t + kernel.lengths()[static_cast<std::size_t>(failing)] * (best + 1) / 2;
+}
+
+}  // namespace taut::detail
