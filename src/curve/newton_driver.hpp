@@ -337,10 +337,12 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.curve = SpectralCurve(kernel_.degree(), lengths_, kernel_.nodes());
     result.length = check_.length;
     result.length_error = check_.length_error + rounding();
-    if (outcome != Relaxation::converged) {  // what the next steps were expected to gain, and no claim beyond that
-      result.length_error += 4 * kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
-      result.length_error = std::max(result.length_error, 1e-6 * check_.length);
+    if (outcome != Relaxation::converged || !kernel_.settled()) {
+      // Shortening steps, or a neutral direction: what is left may be many times what the next step would gain.
+      const double gain = kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
+      result.length_error += std::max(4 * gain, 0.25 * options_.tolerance * check_.length);
     }
+    if (outcome != Relaxation::converged) result.length_error = std::max(result.length_error, 1e-6 * check_.length);
     for (const double off : check_.element_off) {  // where the curve cuts a corner
       if (off > surface_limit()) result.length_error += 2 * off;
     }
@@ -360,7 +362,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   }
 
   // What the end points' own rounding does to the length, and ours: no tolerance asks for less.
-  [[nodiscard]] double rounding() const { return 4e-16 * check_.length + 2.2e-16 * scale_; }
+  [[nodiscard]] double rounding() const { return 8e-16 * check_.length + 2.2e-16 * scale_; }
 
   // How far off the surface a good curve may be between its nodes, model units.
   [[nodiscard]] double surface_limit() const { return 4 * surface_tolerance() * check_.length + 1e-14 * scale_; }

@@ -109,7 +109,8 @@ class NewtonKernel {
   [[nodiscard]] double off_surface() const { return off_surface_; }  ///< max |n| at the last visit
   [[nodiscard]] int num_iterations() const { return iterations_; }
   [[nodiscard]] Index num_evaluated() const { return evaluated_; }
-  [[nodiscard]] bool definite() const { return definite_; }  ///< was the last A positive definite
+  /// Did the last relaxation end with a full Newton step: then what is left is of second order in decrement().
+  [[nodiscard]] bool settled() const { return settled_; }
   void reset_counters() {
     iterations_ = 0;
     evaluated_ = 0;
@@ -136,6 +137,7 @@ class NewtonKernel {
     for (int count = 0; count < goal.max_iterations; ++count) {
       context.check_cancelled();
       ++iterations_;
+      settled_ = false;
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
       linearise();
       definite_ = assemble_and_factor(true, true);
@@ -161,7 +163,8 @@ class NewtonKernel {
         const double longest = step_.colwise().norm().maxCoeff();
         if (off_surface_ <= goal.off_surface) {
           x_ = base_;
-          if (longest * longest <= goal.off_surface * period_) x_ += step_;
+          settled_ = (definite_ || !descend) && longest * longest <= goal.off_surface * period_;
+          if (settled_) x_ += step_;
           return Relaxation::converged;
         }
         if (decrement_ <= 1e-2 * goal.energy * energy_) {
@@ -507,6 +510,7 @@ class NewtonKernel {
   Index evaluated_ = 0;
   bool definite_ = false;
   bool resolved_ = false;
+  bool settled_ = false;
   bool regular_ends_ = false;
   double ends_off_ = 0;
   Relaxation failure_ = Relaxation::stalled;
