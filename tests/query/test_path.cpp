@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <random>
+#include <vector>
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
@@ -90,6 +91,29 @@ TEST(ShortestPath, DoesNotDependOnTheCells) {
   ASSERT_EQ(coarse.status, Status::ok) << coarse.message;
   ASSERT_EQ(fine.status, Status::ok) << fine.message;
   EXPECT_NEAR(coarse.length, fine.length, 1e-8);
+}
+
+// The paper's Figure 5: paths corrected from different grids are the same path.
+TEST(ShortestPath, CorrectedPathsForgetTheGridTheyCameFrom) {
+  struct Case {
+    Surface surface;
+    Vector from, to;
+    double cell;
+  };
+  const std::vector<Case> cases = {
+      {parse_surface("x^2+y^2+z^2=1", {.domain = {"z >= 0"}}), Eigen::Vector3d(0.8, 0, 0.6),
+       Eigen::Vector3d(-0.6, 0.48, 0.64), 0.1},
+      {test::ellipsoid(1, 0.8, 0.5), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0.64, 0.3), 0.1},
+      {test::torus(), Eigen::Vector3d(1.4, 0, 0), Eigen::Vector3d(0, 1, 0.4), 0.1}};
+  for (const CorrectionMethod method : {CorrectionMethod::flow, CorrectionMethod::newton}) {
+    for (const Case& c : cases) {
+      const PathResult coarse = shortest_path(c.surface, c.from, c.to, {.method = method, .cell = c.cell});
+      const PathResult fine = shortest_path(c.surface, c.from, c.to, {.method = method, .cell = c.cell / 2});
+      ASSERT_EQ(coarse.status, Status::ok) << coarse.message;
+      ASSERT_EQ(fine.status, Status::ok) << fine.message;
+      EXPECT_NEAR(coarse.length, fine.length, 1e-6);
+    }
+  }
 }
 
 TEST(ShortestPath, EveryMethodAgreesToItsAccuracy) {
