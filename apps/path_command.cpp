@@ -215,6 +215,7 @@ Run add_path_command(CLI::App& app) {
   command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
       ->check(positive_number());
   command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number());
+  command.add_flag("--all", options.all, "look for every way round, and report each of them");
   command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
   command
       .add_option("--out", arguments->out,

@@ -64,8 +64,13 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
                       {"geodesic_curvature", number(result.residual.geodesic_curvature)}};
   json["candidates"] = Json::array();
   for (const PathCandidate& candidate : result.candidates) {
-    json["candidates"].push_back({{"length", candidate.length}, {"locally_shortest", candidate.locally_shortest}});
+    Json entry = {{"length", candidate.length},
+                  {"length_error", number(candidate.length_error)},
+                  {"locally_shortest", candidate.locally_shortest}};
+    if (options.all) entry["points"] = points_json(candidate.points);
+    json["candidates"].push_back(std::move(entry));
   }
+  json["unique"] = result.unique;
   json["method"] = to_string(options.method);
   json["cell"] = result.cell;
   json["cells"] = result.num_cells;
@@ -93,6 +98,11 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
   }
   if (!result.message.empty()) status += ": " + result.message;
   facts.push_back({"status", status});
+  for (std::size_t i = 1; i < result.candidates.size(); ++i) {
+    const bool as_short = i == 1 && !result.unique;
+    facts.push_back({i == 1 ? "also" : "", fmt::format("{:.15g}{}", result.candidates[i].length,
+                                                       as_short ? ", as short: the shortest path is not unique" : "")});
+  }
   if (has_path(result) && options.method != CorrectionMethod::grid) {
     facts.push_back({"residual", fmt::format("off the surface {:.1e}, geodesic curvature {:.1e}",
                                              result.residual.surface, result.residual.geodesic_curvature)});

@@ -12,11 +12,12 @@
 
 namespace taut::detail {
 
-/// Keeps the distance at the target up to date while the front passes it.
+/// Says when a march has done what it was asked for. Keeps the distance at the target up to date while the front passes
+/// it.
 template <int D, int K>
 class TargetWatch {
  public:
-  TargetWatch(const MarchTask& task, const DistanceField& field) {
+  TargetWatch(const MarchTask& task, const DistanceField& field) : radius_(task.options.radius) {
     if (!task.options.target) return;
     const Vector& x = *task.options.target;
     point_ = {x.data(), task.target_normals.data()};
@@ -33,8 +34,8 @@ class TargetWatch {
     }
     distance_ = reader_->distance(point_);
   }
-  /// Nothing that the front still holds can change the distance at the target.
-  [[nodiscard]] bool is_final(double front_key) const { return front_key > distance_; }
+  /// Nothing that the front still holds can change the distance at the target, or lies within the radius.
+  [[nodiscard]] bool is_final(double front_key) const { return front_key > distance_ || front_key > radius_; }
   /// NaN when there is no target, infinity when it was not reached.
   [[nodiscard]] double distance() const { return reader_ ? distance_ : std::numeric_limits<double>::quiet_NaN(); }
 
@@ -43,6 +44,7 @@ class TargetWatch {
   std::vector<std::int32_t> cell_;
   std::optional<FieldReader<D, K>> reader_;
   double distance_ = std::numeric_limits<double>::infinity();
+  double radius_;
 };
 
 }  // namespace taut::detail

@@ -17,6 +17,10 @@ namespace {
 
 /// A point this many cells off the surface is a mistake, not a rounded coordinate.
 constexpr double kMostCellsOff = 10;
+/// The normal should turn by no more than this from one cell to the next, radians, as long as there are not too many.
+constexpr double kMostTurn = 0.2;
+constexpr int kMostRefinements = 2;
+constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
 constexpr double kPointsPerSide = 16;
 
@@ -64,6 +68,21 @@ void CellLevels::prepare(const PointsIn& near) {
   if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box_);
 }
 
+SurfaceCells CellLevels::subdivided(double h) const {
+  return {surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_), context_};
+}
+
+/// Makes the coarsest cells finer where the surface bends too much from one to the next for marched distances to tell
+/// ways apart.
+void CellLevels::refine_to_curvature() {
+  std::optional<Level>& coarsest = levels_.front();
+  for (int i = 0; i < kMostRefinements && surface_.dim() == 3; ++i) {
+    if (typical_turn(coarsest->cells) <= kMostTurn || 4 * coarsest->cells.num_cells() > kMostRefinedCells) return;
+    size_ /= 2;
+    coarsest.emplace(Level{subdivided(size_), false});
+  }
+}
+
 SurfaceCells& CellLevels::cells(int level, const PointsIn& seeds) {
   levels_.resize(std::max(levels_.size(), static_cast<std::size_t>(level) + 1));
   std::optional<Level>& slot = levels_[static_cast<std::size_t>(level)];
@@ -71,9 +90,8 @@ SurfaceCells& CellLevels::cells(int level, const PointsIn& seeds) {
   const double h = size(level);
   const bool grows = grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted());
   if (!grows) {
-    slot.emplace(
-        Level{SurfaceCells(surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_), context_),
-              false});
+    slot.emplace(Level{subdivided(h), false});
+    if (level == 0 && cell_ == 0) refine_to_curvature();
   } else if (fitted()) {
     slot.emplace(
         Level{SurfaceCells(surface_, grow(surface_, surface_.samples()->points, h, context_), context_), false});

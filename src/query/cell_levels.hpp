@@ -43,6 +43,8 @@ class CellLevels {
     bool lazy;
   };
   [[nodiscard]] bool fitted() const;
+  [[nodiscard]] SurfaceCells subdivided(double h) const;
+  void refine_to_curvature();
 
   Surface surface_;
   GridMethod grid_;

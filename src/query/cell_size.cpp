@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "surface/rbf/kd_tree.hpp"
+#include "taut/cells/surface_cells.hpp"
 
 namespace taut::detail {
 namespace {
@@ -48,6 +49,29 @@ double cell_size_for_samples(const PointCloud& samples) {
   if (samples.size() < 2 * kNeighbour) return coarse;
   const double finest = box.extent().maxCoeff() / kMostCellsPerSide;
   return std::clamp(2 * sample_spacing(samples.points), std::min(finest, coarse), coarse);
+}
+
+double typical_turn(const SurfaceCells& cells) {
+  const CellGrid& grid = cells.grid();
+  const auto d = static_cast<std::size_t>(cells.dim());
+  const double k = static_cast<double>(cells.codim());
+  std::vector<double> turns;
+  std::vector<std::int32_t> next(d);
+  for (Index i = 0; i < cells.num_cells(); ++i) {
+    if (!cells.valid(i)) continue;
+    for (std::size_t axis = 0; axis < d; ++axis) {
+      std::ranges::copy(grid.cell(i), next.begin());
+      ++next[axis];
+      const Index j = grid.find(next);
+      if (j == CellGrid::kNone || !cells.valid(j)) continue;
+      const double shared = (cells.normals(i).transpose() * cells.normals(j)).squaredNorm();
+      turns.push_back(std::asin(std::sqrt(std::clamp(k - shared, 0.0, 1.0))));
+    }
+  }
+  if (turns.empty()) return 0;
+  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+  std::nth_element(turns.begin(), middle, turns.end());
+  return *middle;
 }
 
 }  // namespace taut::detail

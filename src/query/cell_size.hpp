@@ -1,5 +1,6 @@
 #pragma once
 
+#include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
 #include "taut/surface/point_cloud.hpp"
 
@@ -12,5 +13,8 @@ namespace taut::detail {
 /// h for a surface fitted to samples: as `cell_size_for_box`, and no more than twice the sample spacing, so that layers
 /// the samples can tell apart are told apart by the cells.
 [[nodiscard]] double cell_size_for_samples(const PointCloud& samples);
+
+/// By how much the normal space turns from one cell to the next, radians, the median over all of them.
+[[nodiscard]] double typical_turn(const SurfaceCells& cells);
 
 }  // namespace taut::detail

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "query/candidates.hpp"
 #include "query/cell_levels.hpp"
 #include "query/walk_towards.hpp"
 #include "taut/cells/components.hpp"
@@ -15,12 +16,25 @@
 #include "taut/curve/newton.hpp"
 #include "taut/march/descend.hpp"
 #include "taut/march/march.hpp"
+#include "taut/march/start_paths.hpp"
 
 namespace taut {
 namespace {
 
 /// A corrected path is never much longer than its start; one that is has jumped somewhere.
 constexpr double kMostGrowth = 1.1;
+/// Ways round up to this part longer than the shortest, by the marched distances, are looked at as its rivals...
+constexpr double kExcess = 0.15;
+/// ... and those are corrected that may turn out the shortest, the marched distances being this wrong, or this many
+/// times as wrong as those of the ways corrected before...
+constexpr double kMarchError = 0.1;
+constexpr double kMarchErrorFactor = 3;
+/// ... while a path this much longer than what was marched has missed the way that the march has seen.
+constexpr double kDoubt = 0.03;
+constexpr Index kMostRivals = 16;
+constexpr Index kMostWaysRound = 64;
+/// Within this many cells of each other two points have no rivals between them.
+constexpr double kNoRivals = 4;
 
 class Stopwatch {
  public:
@@ -66,6 +80,13 @@ Points with_finite_columns(const VectorIn& p, const PointsIn& targets) {
   return all.leftCols(count);
 }
 
+/// A converged path before any other, then the shorter one; of those not converged the one that came nearer.
+bool is_better(const PathResult& a, const PathResult& b) {
+  if (a.status != b.status)
+    return a.status == Status::ok || (b.status != Status::ok && a.length_error < b.length_error);
+  return a.status == Status::ok ? a.length < b.length : a.length_error < b.length_error;
+}
+
 }  // namespace
 
 struct PathSolver::Impl {
@@ -74,8 +95,10 @@ struct PathSolver::Impl {
   Context context;
   detail::CellLevels levels;
 
-  bool start_path(PathResult& result, int level);
+  std::vector<StartPath> starts(PathResult& result, int level);
+  std::vector<StartPath> ways_round(PathResult& result, SurfaceCells& cells, const DistanceField& from_p);
   void correct(PathResult& result) const;
+  bool correct_all(PathResult& result, const std::vector<StartPath>& starts) const;
   bool apart(int level, const Vector& p, const Vector& q);
   PathResult between(const Vector& p, const Vector& q);
 };
@@ -91,25 +114,52 @@ PathSolver& PathSolver::operator=(PathSolver&&) noexcept = default;
 
 const Surface& PathSolver::surface() const { return impl_->surface; }
 
-/// Marches from result.from to result.to on the cells of one level. Returns false when no way was found.
-bool PathSolver::Impl::start_path(PathResult& result, int level) {
+/// Ways from result.from to result.to to start from, by the cells of one level; none when no way was found.
+std::vector<StartPath> PathSolver::Impl::starts(PathResult& result, int level) {
   if (!levels.exist()) {
     const Stopwatch watch;
-    result.grid_path = detail::walk_towards(surface, result.from, result.to);
+    Points walk = detail::walk_towards(surface, result.from, result.to);
     result.seconds.march += watch.seconds();
-    return result.grid_path.cols() >= 2;
+    if (walk.cols() < 2) return {};
+    const double length = polyline_length(walk);
+    return {{length, std::move(walk)}};
   }
   const Stopwatch cells_watch;
   SurfaceCells& cells = levels.cells(level, chord(result.from, result.to));
   result.seconds.cells += cells_watch.seconds();
   const Stopwatch watch;
-  const DistanceField field =
-      march(surface, cells, result.from, MarchOptions{.method = options.march, .target = result.to}, context);
-  result.grid_path = descend(surface, cells, field, result.to);
+  MarchOptions march_options{.method = options.march};
+  if (!options.all) march_options.target = result.to;
+  const DistanceField from_p = march(surface, cells, result.from, march_options, context);
   result.seconds.march += watch.seconds();
+  return ways_round(result, cells, from_p);
+}
+
+/// The same where the distances from result.from are there already, up to those at result.to.
+std::vector<StartPath> PathSolver::Impl::ways_round(PathResult& result, SurfaceCells& cells,
+                                                    const DistanceField& from_p) {
+  const Stopwatch watch;
   result.cell = cells.grid().size();
+  std::vector<StartPath> paths;
+  const double distance = distance_at(surface, cells, from_p, result.to)(0);
+  if (std::isfinite(distance)) {
+    const bool rivals = options.march == MarchMethod::convergent && options.method != CorrectionMethod::grid;
+    if (rivals && (options.all || distance > kNoRivals * result.cell)) {
+      MarchOptions march_options{.method = options.march};
+      if (!options.all) march_options.target = result.from;
+      const DistanceField from_q = march(surface, cells, result.to, march_options, context);
+      paths = start_paths(surface, cells, from_p, from_q,
+                          {.excess = options.all ? std::numeric_limits<double>::infinity() : kExcess,
+                           .max_paths = options.all ? kMostWaysRound : kMostRivals});
+    }
+    if (paths.empty()) {
+      Points descent = descend(surface, cells, from_p, result.to);
+      if (descent.cols() >= 2) paths.push_back({distance, std::move(descent)});
+    }
+  }
   result.num_cells = cells.num_cells();
-  return result.grid_path.cols() >= 2;
+  result.seconds.march += watch.seconds();
+  return paths;
 }
 
 /// Replaces the Geodesic part of `result` by the corrected grid path.
@@ -143,6 +193,34 @@ void PathSolver::Impl::correct(PathResult& result) const {
   }
 }
 
+/// Corrects every start that may lead to the shortest path; the best becomes `result`, with the others as candidates.
+/// False when a start that promised a clearly shorter path has not led to one.
+bool PathSolver::Impl::correct_all(PathResult& result, const std::vector<StartPath>& starts) const {
+  std::optional<PathResult> best;
+  std::vector<PathCandidate> candidates;
+  double march_error = kMarchError;
+  for (const StartPath& start : starts) {
+    const bool hopeless = best && best->status == Status::ok && start.length > best->length * (1 + march_error);
+    if (hopeless && !options.all) break;
+    result.grid_path = start.points;
+    correct(result);
+    if (result.status == Status::ok) {
+      march_error = std::max(march_error, kMarchErrorFactor * (start.length / result.length - 1));
+      detail::add_candidate(candidates, {result.length, result.length_error, result.locally_shortest, result.points});
+      if (best && best->status == Status::ok && result.length >= best->length) continue;
+    } else if (best && (best->status == Status::ok || best->length_error <= result.length_error)) {
+      continue;
+    }
+    best = result;
+  }
+  const PathSeconds seconds = result.seconds;
+  result = *std::move(best);
+  result.seconds = seconds;
+  result.candidates = std::move(candidates);
+  result.unique = detail::first_is_unique(result.candidates, options.tolerance);
+  return result.status == Status::ok && result.length <= (1 + kDoubt) * starts.front().length;
+}
+
 /// True when the cells of p and q lie in different components of all cells, which is a proof where the surface has
 /// interval bounds.
 bool PathSolver::Impl::apart(int level, const Vector& p, const Vector& q) {
@@ -166,25 +244,25 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q) {
     result.cell = levels.size(0);
     return result;
   }
-  // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails: try finer ones.
-  // The first converged path is returned; failing that, the one that came nearest.
+  // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
+  // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
   std::optional<PathResult> best;
   for (int level = 0; level < levels.num_levels(); ++level) {
-    bool reached = false;
+    std::vector<StartPath> found;
     try {
-      reached = start_path(result, level);
+      found = starts(result, level);
     } catch (const OutOfMemory&) {
       if (level == 0) throw;
       break;
     }
-    if (!reached && !levels.exist()) {
+    if (found.empty() && !levels.exist()) {
       result.message = fmt::format(
           "no start path: in {} dimensions there are no cells to search, and a walk straight "
           "towards the end gets stuck",
           surface.dim());
       return result;
     }
-    if (!reached) {
+    if (found.empty()) {
       if (apart(level, p, q)) {
         result.status = Status::disconnected;
         result.message = "the two points lie on different components of the surface";
@@ -194,19 +272,17 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q) {
                                levels.size(level)));
       continue;
     }
-    correct(result);
+    const bool sure = correct_all(result, found);
     const bool second_try = best.has_value();
-    if (!best || result.status == Status::ok || result.length_error < best->length_error) best = result;
+    if (!best || is_better(result, *best)) best = result;
+    best->seconds = result.seconds;
     // Within a cell the start is as good as it gets.
-    if (result.status == Status::ok || second_try || (p - q).norm() < result.cell) break;
+    if (sure || second_try || (p - q).norm() < result.cell) break;
   }
   if (!best) {
     result.status = Status::disconnected;
     result.message = fmt::format("no path was found on cells down to {:.3g}", result.cell);
     return result;
-  }
-  if (best->status == Status::ok) {
-    best->candidates.push_back({best->length, best->locally_shortest, best->points});
   }
   return *std::move(best);
 }
@@ -262,12 +338,10 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
     try {
       detail::check_point(impl.surface, targets.col(j), "end");
       result.to = impl.levels.on_surface(targets.col(j), "end");
-      result.grid_path = descend(impl.surface, cells, field, result.to);
-      result.cell = cells.grid().size();
-      result.num_cells = cells.num_cells();
-      if (result.grid_path.cols() >= 2 && result.to != from) impl.correct(result);
+      const std::vector<StartPath> starts = impl.ways_round(result, cells, field);
+      const bool sure = !starts.empty() && result.to != from && impl.correct_all(result, starts);
       // What the shared field cannot answer gets the whole treatment: finer cells, and the reason.
-      if (result.status != Status::ok) result = impl.between(from, result.to);
+      if (!sure) result = impl.between(from, result.to);
       if (j == 0) {
         result.seconds.cells += shared.cells;
         result.seconds.march += shared.march;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "taut/cells/surface_cells.hpp"
@@ -13,6 +14,8 @@ struct MarchOptions {
   MarchMethod method = MarchMethod::convergent;
   /// Stop as soon as the distance at this point (d, on the surface) is final.
   std::optional<Vector> target = std::nullopt;
+  /// Leave out what lies farther away than this, model units.
+  double radius = std::numeric_limits<double>::infinity();
 };
 
 /// Marches distances from `sources` (d x m surface points, anywhere in the cells) over the cells; lazy cells are grown

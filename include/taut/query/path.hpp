@@ -37,6 +37,8 @@ struct PathOptions {
   double spacing = 0;
   /// beta of the flow's equation (4).
   double beta = 1;
+  /// Look for every way round, however long, not only for rivals of the shortest.
+  bool all = false;
 };
 
 /// Wall-clock seconds of each stage. Stages shared by several paths count for the first of them.
@@ -48,7 +50,8 @@ struct PathSeconds {
 
 /// One geodesic among several between the same two points.
 struct PathCandidate {
-  double length = 0;  ///< model units
+  double length = 0;        ///< model units
+  double length_error = 0;  ///< as in Geodesic
   bool locally_shortest = false;
   Points points;  ///< d x m
 };
@@ -60,8 +63,12 @@ struct PathResult : Geodesic {
   std::string message;  ///< why `status` is not ok, in one sentence; empty otherwise
   double cell = 0;      ///< h of the cells that were walked, model units
   Index num_cells = 0;
-  Points grid_path;                       ///< d x g: the polyline the correction started from
-  std::vector<PathCandidate> candidates;  ///< distinct geodesics found, shortest first; the first one is this path
+  Points grid_path;  ///< d x g: the polyline the correction started from
+  /// Distinct geodesics that were found, shortest first; the first one is this path. Without PathOptions::all only
+  /// those that might have been the shortest were looked for.
+  std::vector<PathCandidate> candidates;
+  /// False when another candidate is as short, within the errors of both or the tolerance.
+  bool unique = true;
   PathSeconds seconds;
 };
 

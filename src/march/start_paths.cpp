@@ -1,0 +1,209 @@
+#include "taut/march/start_paths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "march/dimensions.hpp"
+#include "march/edge.hpp"
+#include "march/stencil.hpp"
+#include "taut/core/error.hpp"
+#include "taut/march/descend.hpp"
+
+namespace taut {
+namespace detail {
+namespace {
+
+/// The slices between p and q on which ways are told apart, by the part of the way that lies behind: in the middle, and
+/// closer to the ends, since two ways may run together for long.
+constexpr std::array<double, 5> kSlices = {0.5, 0.25, 0.75, 0.125, 0.875};
+/// u_p - u_q differs by at most this many cells from its value on the slice: a band of cells without holes.
+constexpr double kBandCells = 2;
+/// Slices this many cells from an end are left out.
+constexpr double kEndCells = 4;
+/// The following are relative to the distance from the slice to the nearer end.
+/// Accuracy of s: hollows of s less deep are noise.
+constexpr double kNoise = 2e-3;
+/// Crossings closer to each other than this, or than a few cells, are one way.
+constexpr double kSpread = 0.2;
+constexpr double kSpreadCells = 1.5;
+/// Where s rises by no more than this, further crossings are tried. On a plane, s rises by more within kSpread.
+constexpr double kFlat = 0.02;
+
+/// A cell of a slice.
+struct BandCell {
+  Index cell;
+  double length;  // s = u_p + u_q
+};
+
+/// The cells with u_p - u_q about `difference`, those with the least s first.
+std::vector<BandCell> slice(const SurfaceCells& cells, const DistanceField& from_p, const DistanceField& from_q,
+                            double difference) {
+  std::vector<BandCell> band;
+  const double width = kBandCells * cells.grid().size();
+  const Index n = std::min(from_p.distance.size(), from_q.distance.size());
+  for (Index i = 0; i < n; ++i) {
+    const double u_p = from_p.distance(i);
+    const double u_q = from_q.distance(i);
+    if (!std::isfinite(u_p) || !std::isfinite(u_q) || std::abs(u_p - u_q - difference) > width) continue;
+    band.push_back({i, u_p + u_q});
+  }
+  std::sort(band.begin(), band.end(), [](const BandCell& a, const BandCell& b) {
+    return a.length < b.length || (a.length == b.length && a.cell < b.cell);
+  });
+  return band;
+}
+
+/// The hollows of s on a slice while it is flooded from below: sets of cells, each with its lowest cell.
+class Hollows {
+ public:
+  explicit Hollows(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
+
+  /// The lowest cell of the hollow that cell b belongs to. Cells are numbered from the lowest up.
+  std::size_t lowest(std::size_t b) {
+    while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
+    return b;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = lowest(a);
+    b = lowest(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+/// The lowest cell of every hollow at least `depth` deep, lowest first. A hollow ends where it runs over into a lower
+/// one. `place`: a cell's number in the band; all -1 before and after.
+template <int D, int K>
+std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<BandCell>& band, double depth,
+                                 std::vector<std::int32_t>& place) {
+  const Index d = cells.dim();
+  Hollows flood(band.size());
+  std::vector<std::uint8_t> deep(band.size(), 0);
+  Stencil stencil(d);
+  Edge<D> edge;
+  const auto point = [&](Index i) { return SurfacePoint{cells.point(i).data(), cells.normals(i).data()}; };
+  for (std::size_t b = 0; b < band.size(); ++b) {
+    const Index i = band[b].cell;
+    place[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(b);
+    for (const Index j : stencil.block(cells.grid(), cells.grid().cell(i))) {
+      const std::int32_t other = place[static_cast<std::size_t>(j)];
+      if (other < 0 || j == i || !make_edge<D, K>(point(j), point(i), d, cells.codim(), edge)) continue;
+      const std::size_t a = flood.lowest(static_cast<std::size_t>(other));
+      const std::size_t c = flood.lowest(b);
+      if (a == c) continue;
+      const std::size_t higher = std::max(a, c);
+      if (band[b].length - band[higher].length >= depth) deep[higher] = 1;
+      flood.join(a, c);
+    }
+  }
+  std::vector<std::size_t> found;
+  for (std::size_t b = 0; b < band.size(); ++b) {
+    place[static_cast<std::size_t>(band[b].cell)] = -1;
+    if (deep[b] != 0 || flood.lowest(b) == b) found.push_back(b);
+  }
+  return found;
+}
+
+/// Down from the crossing to both ends; empty when one descent fails.
+Points two_descents(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
+                    const DistanceField& from_q, const VectorIn& crossing) {
+  const Points first = descend(surface, cells, from_p, crossing);
+  const Points second = descend(surface, cells, from_q, crossing);
+  if (first.cols() < 2 || second.cols() < 2) return Points(surface.dim(), 0);
+  Points path(surface.dim(), first.cols() + second.cols() - 1);
+  path << first, second.leftCols(second.cols() - 1).rowwise().reverse();
+  return path;
+}
+
+/// Collects one start for each way.
+template <int D, int K>
+class Ways {
+ public:
+  Ways(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p, const DistanceField& from_q,
+       const StartPathOptions& options)
+      : surface_(surface),
+        cells_(cells),
+        from_p_(from_p),
+        from_q_(from_q),
+        options_(options),
+        place_(static_cast<std::size_t>(cells.num_cells()), -1) {}
+
+  std::vector<StartPath> find() && {
+    for (const double part : kSlices) {
+      const double shortest = paths_.empty() ? 0 : least_;
+      const double lever = std::min(part, 1 - part) * shortest;
+      if (part == kSlices.front() || lever > kEndCells * cells_.grid().size()) cross((2 * part - 1) * shortest);
+      if (paths_.empty()) break;
+    }
+    std::stable_sort(paths_.begin(), paths_.end(),
+                     [](const StartPath& a, const StartPath& b) { return a.length < b.length; });
+    if (static_cast<Index>(paths_.size()) > options_.max_paths) {
+      paths_.resize(static_cast<std::size_t>(options_.max_paths));
+    }
+    return std::move(paths_);
+  }
+
+ private:
+  /// Adds the ways that cross one slice and are new.
+  void cross(double difference) {
+    const std::vector<BandCell> band = slice(cells_, from_p_, from_q_, difference);
+    if (band.empty()) return;
+    const bool first = paths_.empty();  // what is apart on the first slice needs no comparing
+    if (first) least_ = band.front().length;
+    const double lever = (least_ - std::abs(difference)) / 2;
+    const double spread = std::max(kSpread * lever, kSpreadCells * cells_.grid().size());
+    for (const std::size_t b : hollows<D, K>(cells_, band, kNoise * lever, place_)) {
+      if (band[b].length > (1 + options_.excess) * least_) break;
+      add(band[b], first ? 0 : spread);
+    }
+    for (const BandCell& crossing : band) {
+      if (crossing.length > band.front().length + kFlat * lever) break;
+      add(crossing, spread);
+    }
+  }
+
+  void add(const BandCell& crossing, double spread) {
+    const auto x = cells_.point(crossing.cell);
+    for (const StartPath& path : paths_) {
+      if ((path.points.colwise() - x).colwise().norm().minCoeff() < spread) return;
+    }
+    Points points = two_descents(surface_, cells_, from_p_, from_q_, x);
+    if (points.cols() > 0) paths_.push_back({crossing.length, std::move(points)});
+  }
+
+  const Surface& surface_;
+  const SurfaceCells& cells_;
+  const DistanceField& from_p_;
+  const DistanceField& from_q_;
+  const StartPathOptions& options_;
+  std::vector<std::int32_t> place_;
+  std::vector<StartPath> paths_;
+  double least_ = 0;
+};
+
+}  // namespace
+}  // namespace detail
+
+std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
+                                   const DistanceField& from_q, const StartPathOptions& options) {
+  if (from_p.method != MarchMethod::convergent || from_q.method != MarchMethod::convergent ||
+      from_p.sources.cols() != 1 || from_q.sources.cols() != 1 || surface.dim() != cells.dim() ||
+      from_p.distance.size() > cells.num_cells() || from_q.distance.size() > cells.num_cells()) {
+    throw InvalidArgument("start_paths: needs two convergent fields of one source each on the cells given");
+  }
+  if (!(options.excess >= 0) || options.max_paths < 1) {
+    throw InvalidArgument("start_paths: excess must not be negative, and at least one path be asked for");
+  }
+  return detail::with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
+    return detail::Ways<D, K>(surface, cells, from_p, from_q, options).find();
+  });
+}
+
+}  // namespace taut

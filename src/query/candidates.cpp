@@ -1,0 +1,55 @@
+#include "query/candidates.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "curve/polyline.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// Geodesics are told apart where they are farther from each other than this part of their length: much more than the
+/// error of a converged curve, even of one that ends near a conjugate point, where curves are least certain...
+constexpr double kSamePlace = 1e-3;
+/// ... or where their lengths differ by this many times the errors of both, and by more than rounding.
+constexpr double kSameErrors = 10;
+constexpr double kRounding = 1e-12;
+
+/// Points at equal parts of the length.
+Points stations(const Points& nodes) {
+  constexpr int kStations = 16;
+  std::vector<double> arcs;
+  const double length = polyline_length(nodes);
+  for (int i = 0; i <= kStations; ++i) arcs.push_back(length * i / kStations);
+  return at_arc_lengths(nodes, arcs);
+}
+
+bool same_curve(const PathCandidate& a, const PathCandidate& b) {
+  const double errors = kSameErrors * (a.length_error + b.length_error) + kRounding * a.length;
+  if (std::abs(a.length - b.length) > errors) return false;
+  return (stations(a.points) - stations(b.points)).colwise().norm().maxCoeff() <= kSamePlace * a.length;
+}
+
+}  // namespace
+
+bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added) {
+  for (const PathCandidate& known : candidates) {
+    if (same_curve(known, added)) return false;
+  }
+  const auto longer =
+      std::upper_bound(candidates.begin(), candidates.end(), added.length,
+                       [](double length, const PathCandidate& candidate) { return length < candidate.length; });
+  candidates.insert(longer, std::move(added));
+  return true;
+}
+
+bool first_is_unique(const std::vector<PathCandidate>& candidates, double tolerance) {
+  if (candidates.size() < 2) return true;
+  const PathCandidate& first = candidates[0];
+  const PathCandidate& second = candidates[1];
+  const double errors = first.length_error + second.length_error;
+  return second.length - first.length > std::max(errors, tolerance * first.length);
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "taut/query/path.hpp"
+
+namespace taut::detail {
+
+/// Files a geodesic among the candidates, shortest first, unless it is there already. True when it was new.
+bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added);
+
+/// True when no other candidate is as short as the first, within the errors of both or `tolerance` of the length.
+[[nodiscard]] bool first_is_unique(const std::vector<PathCandidate>& candidates, double tolerance);
+
+}  // namespace taut::detail

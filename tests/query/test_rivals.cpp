@@ -1,0 +1,129 @@
+// Several geodesics join two points: which is the shortest, and is it the only one?
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "support/surfaces.hpp"
+#include "taut/query/path.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace taut {
+namespace {
+
+using std::numbers::pi;
+
+/// Numbers up to the next semicolon.
+Vector point_of(std::istream& line) {
+  std::string field;
+  std::getline(line, field, ';');
+  std::istringstream words(field);
+  std::vector<double> values;
+  for (double value = 0; words >> value;) values.push_back(value);
+  return Eigen::Map<const Vector>(values.data(), static_cast<Index>(values.size()));
+}
+
+TEST(Rivals, ShortestIsGlobalAtTheCutLocusOfTheReferences) {
+  std::ifstream file(TAUT_TEST_DATA "/near_cut_locus.txt");
+  std::string known;
+  std::unique_ptr<PathSolver> solver;
+  int count = 0;
+  for (std::string text; std::getline(file, text);) {
+    if (text.starts_with('#')) continue;
+    std::istringstream line(text);
+    std::string formula;
+    std::getline(line, formula, ';');
+    if (formula != known) solver = std::make_unique<PathSolver>(parse_surface(formula));
+    known = formula;
+    const double length = point_of(line)(0);
+    const Vector p = point_of(line);
+    const Vector q = point_of(line);
+    const PathResult path = solver->solve(p, q);
+    ASSERT_EQ(path.status, Status::ok) << text << "\n" << path.message;
+    EXPECT_NEAR(path.length, length, 1e-9 * length) << text;
+    EXPECT_LE(std::abs(path.length - length), path.length_error + 1e-13 * length) << text;
+    ++count;
+  }
+  EXPECT_GT(count, 100);
+}
+
+// GeographicLib's triaxial geodesics: x^2/2.25 + y^2 + z^2/0.25 = 1 from (1.5 cos w, sin w, 0), w = 20 deg to w = -50
+// deg. The equator itself, 1.3380387, is a geodesic but not the shortest; the shortest one has a mirror image.
+TEST(Rivals, TriaxialEllipsoidPrefersTheSlopeToTheEquator) {
+  const auto on_equator = [](double degrees) {
+    const double w = degrees * pi / 180;
+    return Vector(Eigen::Vector3d(1.5 * std::cos(w), std::sin(w), 0));
+  };
+  const PathResult path = shortest_path(test::ellipsoid(1.5, 1, 0.5), on_equator(20), on_equator(-50));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, 1.3325034, 5e-8);
+  EXPECT_TRUE(path.locally_shortest);
+  EXPECT_FALSE(path.unique);
+  ASSERT_GE(path.candidates.size(), 2U);
+  EXPECT_NEAR(path.candidates[1].length, path.length, 1e-9);
+}
+
+TEST(Rivals, OppositePointsOfTheSphereHaveManyShortestPaths) {
+  const PathResult path =
+      shortest_path(test::unit_sphere(), Eigen::Vector3d(0, 0.6, 0.8), Eigen::Vector3d(0, -0.6, -0.8));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi, 1e-9);
+  EXPECT_FALSE(path.unique);
+  EXPECT_GE(path.candidates.size(), 2U);
+}
+
+TEST(Rivals, AnOrdinaryPairHasOneShortestPath) {
+  const PathResult path = shortest_path(test::unit_sphere(), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0.6, -0.8));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_TRUE(path.unique);
+  EXPECT_EQ(path.candidates.size(), 1U);
+}
+
+// A cylinder unrolls to a strip: one geodesic each way round.
+TEST(Rivals, AllFindsBothWaysRoundACylinder) {
+  const Surface cylinder = parse_surface("x^2+y^2=1", {.dim = 3, .domain = {"z >= -1", "z <= 1"}});
+  const double angle = 1.5;
+  const PathResult path = shortest_path(cylinder, Eigen::Vector3d(1, 0, -0.2),
+                                        Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.3), {.all = true});
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_TRUE(path.unique);
+  ASSERT_EQ(path.candidates.size(), 2U);
+  EXPECT_NEAR(path.candidates[0].length, std::hypot(angle, 0.5), 1e-9);
+  EXPECT_NEAR(path.candidates[1].length, std::hypot(2 * pi - angle, 0.5), 1e-8);
+  EXPECT_EQ(path.candidates[0].points.col(0), path.from);
+  EXPECT_EQ(path.candidates[1].points.col(0), path.from);
+  EXPECT_EQ(path.candidates[1].points.rightCols(1), path.to);
+}
+
+// Points opposite each other on the outer equator of a torus: over the top and under the bottom, to the left and to the
+// right, four mirror images.
+TEST(Rivals, MirrorImagesOnATorusAreAllFound) {
+  const PathResult path = shortest_path(test::torus(1, 0.4), Eigen::Vector3d(1.4, 0, 0), Eigen::Vector3d(-1.4, 0, 0));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_FALSE(path.unique);
+  ASSERT_GE(path.candidates.size(), 4U);
+  for (int i = 1; i < 4; ++i) EXPECT_NEAR(path.candidates[i].length, path.length, 1e-9) << i;
+}
+
+TEST(Rivals, OneSourceToManyFindsTheSameAsPairByPair) {
+  PathSolver solver(test::ellipsoid(1, 1, 0.1));
+  const Vector p = Eigen::Vector3d(0.9852617525576567, 0.1625644986322215, -0.00532171281775839);
+  Points targets(3, 2);
+  targets << -0.970063528594759, 0.5, -0.23312075136967095, 0.5, 0.006805487323568564, 0.07;
+  const std::vector<PathResult> paths = solver.solve_from(p, targets);
+  ASSERT_EQ(paths.size(), 2U);
+  for (Index j = 0; j < 2; ++j) {
+    const PathResult single = solver.solve(p, targets.col(j));
+    ASSERT_EQ(paths[static_cast<std::size_t>(j)].status, Status::ok);
+    EXPECT_NEAR(paths[static_cast<std::size_t>(j)].length, single.length, 1e-10);
+  }
+  EXPECT_NEAR(paths[0].length, 2.0289159214590136, 1e-9);  // GeographicLib 2.7
+}
+
+}  // namespace
+}  // namespace taut
