@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace taut::detail {
+
+/// A zero of f between a and b, where f has opposite signs (or b's may be just short of zero: then near b). Secants,
+/// with the Illinois rule and a bisection where they stall; to rounding, or where f itself is rounding.
+template <class Function>
+double find_zero(Function&& f, double a, double f_a, double b, double f_b) {
+  constexpr int kMostSteps = 60;
+  for (int step = 0; step < kMostSteps && f_b != 0; ++step) {
+    const bool straddles = (f_a > 0) != (f_b > 0);
+    double t = b - f_b * (b - a) / (f_b - f_a);
+    if (!std::isfinite(t)) break;
+    if (straddles && (step % 6 == 5 || !(t > std::min(a, b) && t < std::max(a, b)))) t = a + (b - a) / 2;
+    const double step_size = std::abs(t - b);
+    const double f_t = f(t);
+    if (!std::isfinite(f_t)) break;
+    if ((f_t > 0) != (f_b > 0)) {
+      a = b;
+      f_a = f_b;
+    } else if (straddles) {
+      f_a /= 2;
+    } else {
+      a = b;
+      f_a = f_b;
+    }
+    b = t;
+    f_b = f_t;
+    if (step_size <= 2 * std::numeric_limits<double>::epsilon() * std::abs(t)) break;
+    if (!straddles && step > 2) break;
+  }
+  return b;
+}
+
+}  // namespace taut::detail
