@@ -41,6 +41,18 @@ class BandedCholesky {
     return -1;
   }
 
+  /// Solves in place with the factor for every row of x at once: unknown r is column r (of n).
+  void solve_rows(Eigen::Ref<Points> x) const {
+    for (Index r = 0; r < n_; ++r) {
+      for (Index c = std::max<Index>(0, r - width_); c < r; ++c) x.col(r).noalias() -= at(r, c) * x.col(c);
+      x.col(r) /= at(r, r);
+    }
+    for (Index r = n_ - 1; r >= 0; --r) {
+      x.col(r) /= at(r, r);
+      for (Index c = std::max<Index>(0, r - width_); c < r; ++c) x.col(c).noalias() -= at(r, c) * x.col(r);
+    }
+  }
+
   /// Solves in place with the factor.
   void solve(Eigen::Ref<Vector> x) const {
     for (Index r = 0; r < n_; ++r) {

@@ -9,7 +9,8 @@
 #include <limits>
 #include <optional>
 
-#include "curve/newton_kernel.hpp"
+#include "curve/reference_element.hpp"
+#include "taut/core/types.hpp"
 
 namespace taut::detail {
 
@@ -17,16 +18,15 @@ namespace taut::detail {
 /// in the element that begins there. Jacobi fields that vanish at the start solve the linearised equation A Y = 0
 /// element by element: with S the condensed blocks of an element and Phi the flux that arrives from the left,
 ///   Phi + S_00 Y_0 + S_01 Y_1 = 0,   Phi' = S_10 Y_0 + S_11 Y_1.
-/// A conjugate point is where a combination of the q fields vanishes. None when the ends are singular points of the
-/// surface.
-template <int D, int K>
-std::optional<double> find_conjugate_point(NewtonKernel<D, K>& kernel, Index failing) {
-  constexpr int Q = NewtonKernel<D, K>::Q;
+/// A conjugate point is where a combination of the q fields vanishes. The chain of `system` is condensed with the
+/// couplings to the ends of the curve.
+template <class Curve, class System>
+std::optional<double> find_conjugate_point(const Curve& curve, System& system, Index failing) {
+  constexpr int Q = System::Q;
   using Block = Eigen::Matrix<double, Q, Q>;
-  const Index q = kernel.tangents(0).cols();
-  const int p = kernel.degree();
-  if (failing < 0 || !kernel.regular_ends() || !kernel.condense_with_ends()) return std::nullopt;
-  auto& chain = kernel.chain();
+  const Index q = system.tangents(0).cols();
+  const int p = curve.degree();
+  auto& chain = system.chain();
 
   Block here = Block::Zero(q, q);
   Block flux = Block::Identity(q, q);
@@ -38,7 +38,7 @@ std::optional<double> find_conjugate_point(NewtonKernel<D, K>& kernel, Index fai
     next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(load);
     flux = (s.bottomLeftCorner(q, q) * here + s.bottomRightCorner(q, q) * next).eval();
     // Keep the fields independent: another basis of their span.
-    const double h = kernel.lengths()[static_cast<std::size_t>(e)];
+    const double h = curve.lengths[static_cast<std::size_t>(e)];
     Block gram = next.transpose() * next + h * h * (flux.transpose() * flux);
     const Eigen::LLT<Block> factor(gram);
     if (factor.info() != Eigen::Success) return std::nullopt;
@@ -50,18 +50,18 @@ std::optional<double> find_conjugate_point(NewtonKernel<D, K>& kernel, Index fai
   // The fields inside the element, as polynomials in R^d: column b of node i is T_i Y_i e_b.
   const auto s = chain.end_block(failing);
   next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(flux + s.topLeftCorner(q, q) * here);
-  Eigen::MatrixXd nodal(q, kernel.num_nodes());
-  const Index d = kernel.nodes().rows();
+  Eigen::MatrixXd nodal(q, curve.num_nodes());
+  const Index d = curve.dim;
   Eigen::MatrixXd fields((p + 1) * d, q);  // rows of node i: i d ..
   for (Index b = 0; b < q; ++b) {
     nodal.col(failing * p) = here.col(b);
     nodal.col(failing * p + p) = next.col(b);
     chain.back_substitute(failing, nodal.data(), 0);
     for (int i = 0; i <= p; ++i) {
-      fields.block(i * d, b, d, 1) = kernel.tangents(failing * p + i) * nodal.col(failing * p + i);
+      fields.block(i * d, b, d, 1) = system.tangents(failing * p + i) * nodal.col(failing * p + i);
     }
   }
-  const ReferenceElement& element = kernel.element();
+  const ReferenceElement& element = *curve.element;
   Eigen::VectorXd basis(p + 1);
   const auto combine = [&](const Eigen::VectorXd& coefficients) {
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(d, q);
@@ -97,7 +97,7 @@ std::optional<double> find_conjugate_point(NewtonKernel<D, K>& kernel, Index fai
     best = std::clamp(best - std::clamp(change, -0.2, 0.2), -1.0, 1.0);
     if (std::abs(change) < 1e-13) break;
   }
-  return t + kernel.lengths()[static_cast<std::size_t>(failing)] * (best + 1) / 2;
+  return t + curve.lengths[static_cast<std::size_t>(failing)] * (best + 1) / 2;
 }
 
 }  // namespace taut::detail

@@ -6,7 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "curve/newton_kernel.hpp"
+#include "curve/reference_element.hpp"
+#include "taut/core/types.hpp"
+#include "taut/surface/implicit_function.hpp"
 
 namespace taut::detail {
 
@@ -32,9 +34,11 @@ struct CurveCheck {
   std::vector<double> element_off;     ///< max |J^+ F| in each element
 };
 
-template <int D, int K>
+template <class Frame>
 class CurveChecker {
  public:
+  static constexpr int D = Frame::kD;
+  static constexpr int K = Frame::kK;
   static constexpr double kCorner = 0.1;  // radians
 
   using VectorD = Eigen::Matrix<double, D, 1>;
@@ -50,7 +54,8 @@ class CurveChecker {
   void reset_counters() { evaluated_ = 0; }
 
   /// `check` is reused from call to call.
-  void inspect(Evaluator& evaluator, NewtonKernel<D, K>& kernel, CurveCheck& check) {
+  template <class Kernel>
+  void inspect(Evaluator& evaluator, const Kernel& kernel, CurveCheck& check) {
     const ReferenceElement& element = kernel.element();
     const int n = element.num_nodes();
     const int checks = element.num_checks();
@@ -85,7 +90,8 @@ class CurveChecker {
   }
 
  private:
-  void gather(const NewtonKernel<D, K>& kernel, CurveCheck& check) {
+  template <class Kernel>
+  void gather(const Kernel& kernel, CurveCheck& check) {
     const ReferenceElement& element = kernel.element();
     const int checks = element.num_checks();
     const int p = kernel.degree();
@@ -162,7 +168,7 @@ class CurveChecker {
 
   Index d_;
   Index k_;
-  TangentFrame<D, K> frame_;
+  Frame frame_;
   VectorK scratch_;
   VectorD first_, second_, step_, tangential_;
   Eigen::Matrix<double, D, Eigen::Dynamic> local_, points_, firsts_, seconds_, jump_;

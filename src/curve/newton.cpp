@@ -20,16 +20,22 @@ void check(const NewtonOptions& options) {
   }
 }
 
+// From here on tangent coordinates cost more to eliminate than products with the Hessian; measured (docs/newton.md).
+constexpr Index kManyTangents = 9;
+
 // Sizes that are worth a kernel of their own; the rest shares one with sizes at run time.
 std::unique_ptr<NewtonSolver::Backend> make_backend(const Surface& surface, const NewtonOptions& options) {
+  using detail::DirectSystem;
   using detail::make_newton_driver;
   check(options);
   if (surface.codim() == 1) {
-    if (surface.dim() == 2) return make_newton_driver<2, 1>(surface, options);
-    if (surface.dim() == 3) return make_newton_driver<3, 1>(surface, options);
-    if (surface.dim() == 4) return make_newton_driver<4, 1>(surface, options);
+    if (surface.dim() == 2) return make_newton_driver<DirectSystem<2, 1>>(surface, options);
+    if (surface.dim() == 3) return make_newton_driver<DirectSystem<3, 1>>(surface, options);
+    if (surface.dim() == 4) return make_newton_driver<DirectSystem<4, 1>>(surface, options);
   }
-  return make_newton_driver<Eigen::Dynamic, Eigen::Dynamic>(surface, options);
+  if (surface.dim() - surface.codim() >= kManyTangents)
+    return make_newton_driver<detail::KrylovSystem>(surface, options);
+  return make_newton_driver<DirectSystem<Eigen::Dynamic, Eigen::Dynamic>>(surface, options);
 }
 
 }  // namespace

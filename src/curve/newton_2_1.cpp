@@ -1,7 +1,9 @@
+#include "curve/direct_system.hpp"
 #include "curve/newton_driver.hpp"
 
 namespace taut::detail {
 
-template std::unique_ptr<NewtonSolver::Backend> make_newton_driver<2, 1>(const Surface&, const NewtonOptions&);
+template std::unique_ptr<NewtonSolver::Backend> make_newton_driver<DirectSystem<2, 1>>(const Surface&,
+                                                                                       const NewtonOptions&);
 
 }  // namespace taut::detail

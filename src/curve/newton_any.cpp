@@ -1,8 +1,9 @@
+#include "curve/direct_system.hpp"
 #include "curve/newton_driver.hpp"
 
 namespace taut::detail {
 
-template std::unique_ptr<NewtonSolver::Backend> make_newton_driver<Eigen::Dynamic, Eigen::Dynamic>(
+template std::unique_ptr<NewtonSolver::Backend> make_newton_driver<DirectSystem<Eigen::Dynamic, Eigen::Dynamic>>(
     const Surface&, const NewtonOptions&);
 
 }  // namespace taut::detail

@@ -16,8 +16,13 @@ class NewtonSolver::Backend {
 
 namespace detail {
 
-/// A kernel with these sizes at compile time (or Eigen::Dynamic). Each is compiled in a file of its own.
 template <int D, int K>
+class DirectSystem;
+class KrylovSystem;
+
+/// A solver of these systems: DirectSystem with its sizes at compile time (or Eigen::Dynamic), or KrylovSystem. Each is
+/// compiled in a file of its own.
+template <class System>
 std::unique_ptr<NewtonSolver::Backend> make_newton_driver(const Surface& surface, const NewtonOptions& options);
 
 }  // namespace detail

@@ -5,7 +5,6 @@
 #include <memory>
 #include <vector>
 
-#include "curve/conjugate_point.hpp"
 #include "curve/curve_check.hpp"
 #include "curve/newton_backend.hpp"
 #include "curve/newton_kernel.hpp"
@@ -17,11 +16,15 @@ namespace taut::detail {
 /// The adaptive part of Newton's correction: a coarse polyline (p = 1) takes the start to the valley of a geodesic;
 /// then elements of high degree, sized by how fast the normal turns, are solved, inspected between their nodes, and cut
 /// where the error is, until the length is good enough.
-template <int D, int K>
+template <class System>
 class NewtonDriver : public NewtonSolver::Backend {
  public:
-  using Nodes = typename NewtonKernel<D, K>::Nodes;
-  using VectorD = typename NewtonKernel<D, K>::VectorD;
+  using Kernel = NewtonKernel<System>;
+  using Frame = typename System::Frame;
+  static constexpr int D = Kernel::D;
+  static constexpr int K = Kernel::K;
+  using Nodes = typename Kernel::Nodes;
+  using VectorD = typename Kernel::VectorD;
 
   NewtonDriver(const Surface& surface, const NewtonOptions& options)
       : surface_(surface),
@@ -107,11 +110,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     const Index m = kernel_.num_elements();
     turning_.assign(static_cast<std::size_t>(m), 0.0);
     for (Index e = 1; e + 1 < m; ++e) {
-      const auto a = kernel_.tangents(e);
-      const auto b = kernel_.tangents(e + 1);
-      const double lost = static_cast<double>(a.cols()) - (b.transpose() * a).squaredNorm();
-      turning_[static_cast<std::size_t>(e)] = std::asin(std::sqrt(std::clamp(lost, 0.0, 1.0)));
-      if (flipped(e)) turning_[static_cast<std::size_t>(e)] = 2;
+      turning_[static_cast<std::size_t>(e)] = flipped(e) ? 2 : kernel_.turn(e, e + 1);
     }
     if (m >= 3) {
       turning_.front() = turning_[1];
@@ -173,9 +172,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   }
 
   [[nodiscard]] int first_degree() const {
-    const Index q = surface_.dim() - surface_.codim();
-    if (q > 12 || options_.tolerance > 1e-6) return 4;
-    return 8;
+    return options_.tolerance > 1e-6 ? 4 : System::high_degree(surface_.dim() - surface_.codim());
   }
 
   void start_fine(int p) {
@@ -267,7 +264,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   }
 
   [[nodiscard]] bool accurate(double error) const {
-    return error <= 0.5 * options_.tolerance * check_.length && check_.corner <= CurveChecker<D, K>::kCorner &&
+    return error <= 0.5 * options_.tolerance * check_.length && check_.corner <= CurveChecker<Frame>::kCorner &&
            check_.off_surface <= surface_tolerance() * check_.length + 1e-15 * scale_;
   }
 
@@ -286,7 +283,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       const double by_off = std::pow(check_.element_off[e] / off_share, 1.0 / (p + 1));
       const double wanted = std::max(by_error, by_off);
       if (wanted > 1) pieces_[e] = static_cast<int>(std::clamp(std::ceil(wanted), 2.0, 4.0));
-      if (check_.element_corner[e] > CurveChecker<D, K>::kCorner) pieces_[e] = std::max(pieces_[e], 2);
+      if (check_.element_corner[e] > CurveChecker<Frame>::kCorner) pieces_[e] = std::max(pieces_[e], 2);
       if (lengths_[e] < 1e-7 * kernel_.period()) pieces_[e] = 1;
       any = any || pieces_[e] > 1;
       total += pieces_[e];
@@ -349,11 +346,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.residual = {.surface = check_.off_surface, .geodesic_curvature = check_.geodesic_curvature};
     result.num_iterations = kernel_.num_iterations();
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
-    result.index = kernel_.chain().num_negative();
-    result.locally_shortest =
-        outcome == Relaxation::converged && kernel_.resolved() && kernel_.chain().first_failing() < 0;
+    result.index = kernel_.num_negative();
+    result.locally_shortest = outcome == Relaxation::converged && kernel_.resolved() && kernel_.minimum();
     if (result.index > 0) {
-      if (const auto t = find_conjugate_point(kernel_, kernel_.chain().first_failing())) {
+      if (const auto t = kernel_.conjugate_point(*evaluator_)) {
         result.conjugate_at = *t * (check_.length / kernel_.period());
       }
     }
@@ -392,7 +388,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     } else if (check_.length_error > options_.tolerance * result.length) {
       result.reason = nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
                                  : "the tolerance was not met with the elements allowed";
-    } else if (check_.corner > CurveChecker<D, K>::kCorner) {
+    } else if (check_.corner > CurveChecker<Frame>::kCorner) {
       result.reason = "the curve has a corner: it crosses a crease of the surface";
     } else if (check_.geodesic_curvature > 0.3 * std::max(check_.curvature, 1 / check_.length) + curvature_noise()) {
       result.reason = "the curve bends within the surface: a crease?";
@@ -439,7 +435,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     const Index k = surface_.codim();
     Eigen::MatrixXd value(k, n);
     Eigen::MatrixXd jacobian(d * k, n);
-    TangentFrame<D, K> frame;
+    Frame frame;
     frame.resize(d, k);
     Eigen::Matrix<double, K, 1> scratch(k);
     Eigen::Matrix<double, D, 1> step(d);
@@ -465,8 +461,8 @@ class NewtonDriver : public NewtonSolver::Backend {
   Surface surface_;
   NewtonOptions options_;
   std::unique_ptr<Evaluator> evaluator_;
-  NewtonKernel<D, K> kernel_;
-  CurveChecker<D, K> checker_;
+  Kernel kernel_;
+  CurveChecker<Frame> checker_;
   CurveCheck check_;
   const Context* context_ = nullptr;
   double scale_ = 1;
@@ -476,9 +472,9 @@ class NewtonDriver : public NewtonSolver::Backend {
   std::vector<int> pieces_;
 };
 
-template <int D, int K>
+template <class System>
 std::unique_ptr<NewtonSolver::Backend> make_newton_driver(const Surface& surface, const NewtonOptions& options) {
-  return std::make_unique<NewtonDriver<D, K>>(surface, options);
+  return std::make_unique<NewtonDriver<System>>(surface, options);
 }
 
 }  // namespace taut::detail

@@ -11,6 +11,8 @@ namespace taut::detail {
 template <int D, int K>
 class TangentFrame {
  public:
+  static constexpr int kD = D;
+  static constexpr int kK = K;
   static constexpr int Q = D == Eigen::Dynamic || K == Eigen::Dynamic ? Eigen::Dynamic : D - K;
   using VectorD = Eigen::Matrix<double, D, 1>;
   using VectorK = Eigen::Matrix<double, K, 1>;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "curve/direct_system.hpp"
 #include "curve/newton_kernel.hpp"
 #include "support/geodesic_start.hpp"
 #include "support/surfaces.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 // Length of the discrete geodesic on m equal elements of degree p.
 double discrete_length(const Surface& surface, const Points& path, int degree, Index elements) {
-  detail::NewtonKernel<3, 1> kernel(3, 1);
+  detail::NewtonKernel<detail::DirectSystem<3, 1>> kernel(3, 1);
   const auto evaluator = surface.make_evaluator();
   const double length = 1.0;
   kernel.set_mesh(degree,
