@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
+#include "path_pairs.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
@@ -133,40 +135,23 @@ ExitCode run_many(const PathArguments& arguments, const Surface& surface, const 
   return all_ok ? kDone : kSomeLinesFailed;
 }
 
-/// Line k in, line k out; a failed line carries its reason and the rest goes on.
+/// All that says which surface it is.
+std::string surface_text(const SurfaceArguments& arguments) {
+  std::string text =
+      fmt::format("{} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
+                  fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box,
+                  arguments.rbf.smoothing.value_or(-1), arguments.rbf.max_samples, arguments.rbf.support_radius);
+  if (!names_a_file(arguments.surface)) return text;
+  std::error_code ignored;
+  const auto time = std::filesystem::last_write_time(arguments.surface, ignored).time_since_epoch().count();
+  return text + fmt::format(" {}", time);
+}
+
 ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const Context& context) {
-  const Index d = surface.dim();
-  CsvRows rows(arguments.pairs);
-  PathSolver solver(surface, arguments.options, context);
-  bool all_ok = true;
-  Index count = 0;
-  for (CsvRow row; rows.next(row);) {
-    PathResult result;
-    std::string problem = row.problem;
-    if (problem.empty() && static_cast<Index>(row.values.size()) != 2 * d) {
-      problem = fmt::format("{} numbers; a pair takes {}, p1,...,pd,q1,...,qd", row.values.size(), 2 * d);
-    }
-    if (problem.empty()) {
-      const Eigen::Map<const Vector> p(row.values.data(), d);
-      const Eigen::Map<const Vector> q(row.values.data() + d, d);
-      try {
-        result = solver.solve(p, q);
-        problem = result.message;
-      } catch (const Cancelled&) {
-        std::cout.flush();
-        throw;
-      } catch (const Error& error) {
-        problem = error.what();
-      }
-    }
-    if (result.status != Status::ok) {
-      all_ok = false;
-      print_error(fmt::format("{} line {}: {}", arguments.pairs, row.line, problem));
-    }
-    std::cout << path_csv(result) << "\n";
-    context.report("pairs", -static_cast<double>(++count));
-  }
-  return all_ok ? kDone : kSomeLinesFailed;
+  PairsRequest request{
+      .file = arguments.pairs, .out = {}, .surface = surface_text(arguments.surface), .options = arguments.options};
+  if (!arguments.out.empty()) request.out = arguments.out.front();
+  return answer_pairs(request, surface, context);
 }
 
 ExitCode run(const PathArguments& arguments) {
@@ -177,6 +162,9 @@ ExitCode run(const PathArguments& arguments) {
     throw UsageError("give --from with --to, or --from with --to-file, or --pairs (see taut path --help)");
   }
   check_outputs(arguments.out, OutputKind::path);
+  if (pairs && (arguments.out.size() > 1 || (arguments.out.size() == 1 && !arguments.out.front().ends_with(".csv")))) {
+    throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
+  }
   const Timer timer;
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);

@@ -18,7 +18,7 @@ namespace {
 /// A point this many cells off the surface is a mistake, not a rounded coordinate.
 constexpr double kMostCellsOff = 10;
 /// The normal should turn by no more than this from one cell to the next, radians, as long as there are not too many.
-constexpr double kMostTurn = 0.2;
+constexpr double kMostTurn = 0.7;
 constexpr int kMostRefinements = 2;
 constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
@@ -56,7 +56,7 @@ void CellLevels::prepare(const PointsIn& near) {
     bool inside = true;
     for (Index j = 0; j < near.cols(); ++j) inside = inside && box_.contains(near.col(j));
     if (inside || surface_.box()) return;
-    levels_.clear();
+    complete_.clear();
   }
   if (!exist()) {
     box_ = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
@@ -68,37 +68,41 @@ void CellLevels::prepare(const PointsIn& near) {
   if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box_);
 }
 
-SurfaceCells CellLevels::subdivided(double h) const {
-  return {surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_), context_};
+bool CellLevels::grows() const { return grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted()); }
+
+std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
+  if (grows()) return nullptr;
+  return std::make_shared<SurfaceCells>(surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_),
+                                        context_);
 }
 
 /// Makes the coarsest cells finer where the surface bends too much from one to the next for marched distances to tell
 /// ways apart.
 void CellLevels::refine_to_curvature() {
-  std::optional<Level>& coarsest = levels_.front();
+  std::shared_ptr<SurfaceCells>& coarsest = complete_.front();
   for (int i = 0; i < kMostRefinements && surface_.dim() == 3; ++i) {
-    if (typical_turn(coarsest->cells) <= kMostTurn || 4 * coarsest->cells.num_cells() > kMostRefinedCells) return;
+    if (normal_turn(*coarsest) <= kMostTurn || 4 * coarsest->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
-    coarsest.emplace(Level{subdivided(size_), false});
+    coarsest = subdivided(size_);
   }
 }
 
-SurfaceCells& CellLevels::cells(int level, const PointsIn& seeds) {
-  levels_.resize(std::max(levels_.size(), static_cast<std::size_t>(level) + 1));
-  std::optional<Level>& slot = levels_[static_cast<std::size_t>(level)];
-  if (slot && !slot->lazy) return slot->cells;
-  const double h = size(level);
-  const bool grows = grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted());
-  if (!grows) {
-    slot.emplace(Level{subdivided(h), false});
-    if (level == 0 && cell_ == 0) refine_to_curvature();
-  } else if (fitted()) {
-    slot.emplace(
-        Level{SurfaceCells(surface_, grow(surface_, surface_.samples()->points, h, context_), context_), false});
-  } else {
-    slot.emplace(Level{SurfaceCells::lazy(surface_, seeds, h, context_), true});
+std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds) {
+  if (lazy()) {
+    return std::make_shared<SurfaceCells>(SurfaceCells::lazy(surface_, seeds, size(level), context_));
   }
-  return slot->cells;
+  const std::lock_guard lock(mutex_);
+  complete_.resize(std::max(complete_.size(), static_cast<std::size_t>(level) + 1));
+  std::shared_ptr<SurfaceCells>& slot = complete_[static_cast<std::size_t>(level)];
+  if (slot) return slot;
+  if (grows()) {
+    slot = std::make_shared<SurfaceCells>(surface_, grow(surface_, surface_.samples()->points, size(level), context_),
+                                          context_);
+  } else {
+    slot = subdivided(size(level));
+    if (level == 0 && cell_ == 0) refine_to_curvature();
+  }
+  return slot;
 }
 
 Vector CellLevels::on_surface(const VectorIn& x, const char* name) const {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <optional>
+#include <memory>
+#include <mutex>
 #include <vector>
 
 #include "taut/cells/surface_cells.hpp"
@@ -25,25 +26,26 @@ class CellLevels {
 
   /// False in more than kMostDimensions: then there is a box and a size to judge points by, but no cells.
   [[nodiscard]] bool exist() const { return surface_.dim() <= kMostDimensions; }
+  /// True when cells are grown where they are needed: from the ends, for each call.
+  [[nodiscard]] bool lazy() const { return grows() && !fitted(); }
   /// How many sizes are worth trying: the number of cells grows by 2^(d - 1) each time.
   [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
   [[nodiscard]] double size(int level) const;
   /// Where cells are looked for. Empty until prepared.
   [[nodiscard]] const Box& box() const { return box_; }
-  /// The cells of a level. `seeds` (d x n) are where lazy ones start; they grow anew for each call.
-  SurfaceCells& cells(int level, const PointsIn& seeds);
+  /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are
+  /// shared by all callers, who must not ask for more than their const interface; they may call from several threads.
+  [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
+  /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
+  [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;
 
   /// x (d) brought onto the surface. `name` ("start") says in messages which point it is. Throws InvalidArgument when
   /// x does not fit the surface or lies more than ten cells off it; a move of more than one cell is told.
   [[nodiscard]] Vector on_surface(const VectorIn& x, const char* name) const;
 
  private:
-  struct Level {
-    SurfaceCells cells;
-    bool lazy;
-  };
   [[nodiscard]] bool fitted() const;
-  [[nodiscard]] SurfaceCells subdivided(double h) const;
+  [[nodiscard]] bool grows() const;
   void refine_to_curvature();
 
   Surface surface_;
@@ -52,7 +54,8 @@ class CellLevels {
   double cell_;
   double size_ = 0;  // h of level 0; 0 until prepared
   Box box_;
-  std::vector<std::optional<Level>> levels_;
+  std::mutex mutex_;
+  std::vector<std::shared_ptr<SurfaceCells>> complete_;  // a level each, null until asked for
 };
 
 /// "1,0,0.5": a point as the command line takes it.

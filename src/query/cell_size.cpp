@@ -19,6 +19,8 @@ constexpr double kMostCellsPerSide = 160;
 /// Distance to the k-th neighbour tells the density; the nearest alone is fooled by overlapping scans.
 constexpr Index kNeighbour = 6;
 constexpr Index kProbes = 400;
+/// The normals of a flat body turn at its rim only.
+constexpr double kTurnQuantile = 0.95;
 
 /// Typical distance between neighbouring samples of a surface (two-dimensional for d = 3): on average k of them lie
 /// within r_k, so the area a sample stands for is pi r_k^2 / k.
@@ -51,7 +53,7 @@ double cell_size_for_samples(const PointCloud& samples) {
   return std::clamp(2 * sample_spacing(samples.points), std::min(finest, coarse), coarse);
 }
 
-double typical_turn(const SurfaceCells& cells) {
+double normal_turn(const SurfaceCells& cells) {
   const CellGrid& grid = cells.grid();
   const auto d = static_cast<std::size_t>(cells.dim());
   const double k = static_cast<double>(cells.codim());
@@ -64,14 +66,15 @@ double typical_turn(const SurfaceCells& cells) {
       ++next[axis];
       const Index j = grid.find(next);
       if (j == CellGrid::kNone || !cells.valid(j)) continue;
-      const double shared = (cells.normals(i).transpose() * cells.normals(j)).squaredNorm();
-      turns.push_back(std::asin(std::sqrt(std::clamp(k - shared, 0.0, 1.0))));
+      const Eigen::MatrixXd shared = cells.normals(i).transpose() * cells.normals(j);
+      turns.push_back(cells.codim() == 1 ? std::acos(std::clamp(shared(0), -1.0, 1.0))
+                                         : std::asin(std::sqrt(std::clamp(k - shared.squaredNorm(), 0.0, 1.0))));
     }
   }
   if (turns.empty()) return 0;
-  const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
-  std::nth_element(turns.begin(), middle, turns.end());
-  return *middle;
+  const auto at = turns.begin() + static_cast<std::ptrdiff_t>(kTurnQuantile * static_cast<double>(turns.size()));
+  std::nth_element(turns.begin(), at, turns.end());
+  return *at;
 }
 
 }  // namespace taut::detail

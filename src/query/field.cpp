@@ -17,7 +17,8 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   Points on_surface(sources.rows(), sources.cols());
   for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = levels.on_surface(sources.col(j), "source");
 
-  SurfaceCells& cells = levels.cells(0, on_surface);
+  const std::shared_ptr<SurfaceCells> shared = levels.cells(0, on_surface);
+  SurfaceCells& cells = *shared;
   const DistanceField field =
       march(surface, cells, on_surface, MarchOptions{.method = options.march, .target = {}}, context);
   FieldResult result;

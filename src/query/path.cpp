@@ -2,48 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <atomic>
 #include <cmath>
-#include <limits>
+#include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <utility>
 
-#include "query/candidates.hpp"
+#include "core/parallel.hpp"
 #include "query/cell_levels.hpp"
-#include "query/walk_towards.hpp"
-#include "taut/cells/components.hpp"
-#include "taut/curve/flow.hpp"
-#include "taut/curve/newton.hpp"
-#include "taut/march/descend.hpp"
-#include "taut/march/march.hpp"
-#include "taut/march/start_paths.hpp"
+#include "query/corrector.hpp"
+#include "query/start_finder.hpp"
+#include "query/stopwatch.hpp"
 
 namespace taut {
 namespace {
-
-/// A corrected path is never much longer than its start; one that is has jumped somewhere.
-constexpr double kMostGrowth = 1.1;
-/// Ways round up to this part longer than the shortest, by the marched distances, are looked at as its rivals...
-constexpr double kExcess = 0.15;
-/// ... and those are corrected that may turn out the shortest, the marched distances being this wrong, or this many
-/// times as wrong as those of the ways corrected before...
-constexpr double kMarchError = 0.1;
-constexpr double kMarchErrorFactor = 3;
-/// ... while a path this much longer than what was marched has missed the way that the march has seen.
-constexpr double kDoubt = 0.03;
-constexpr Index kMostRivals = 16;
-constexpr Index kMostWaysRound = 64;
-/// Within this many cells of each other two points have no rivals between them.
-constexpr double kNoRivals = 4;
-
-class Stopwatch {
- public:
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
-};
 
 void check_options(const PathOptions& options) {
   if (!(options.tolerance >= 1e-13) || !(options.tolerance <= 1e-3)) {
@@ -57,56 +31,75 @@ void check_options(const PathOptions& options) {
   }
 }
 
-double polyline_length(const Points& x) {
-  double length = 0;
-  for (Index i = 1; i < x.cols(); ++i) length += (x.col(i) - x.col(i - 1)).norm();
-  return length;
-}
-
 Points chord(const VectorIn& p, const VectorIn& q) {
   Points x(p.size(), 2);
   x << p, q;
   return x;
 }
 
-/// p and the columns of `targets` without a NaN or infinity.
-Points with_finite_columns(const VectorIn& p, const PointsIn& targets) {
-  Points all(p.size(), targets.cols() + 1);
-  all.col(0) = p;
-  Index count = 1;
-  for (Index j = 0; j < targets.cols() && targets.rows() == p.size(); ++j) {
-    if (targets.col(j).allFinite()) all.col(count++) = targets.col(j);
+/// The columns of x (d each) without a NaN or infinity.
+Points finite_columns(const PointsIn& x, Index dim) {
+  Points finite(dim, x.rows() == dim ? x.cols() : 0);
+  Index count = 0;
+  for (Index j = 0; j < finite.cols(); ++j) {
+    if (x.col(j).allFinite()) finite.col(count++) = x.col(j);
   }
-  return all.leftCols(count);
+  return finite.leftCols(count);
 }
 
-/// A converged path before any other, then the shorter one; of those not converged the one that came nearer.
-bool is_better(const PathResult& a, const PathResult& b) {
-  if (a.status != b.status)
-    return a.status == Status::ok || (b.status != Status::ok && a.length_error < b.length_error);
-  return a.status == Status::ok ? a.length < b.length : a.length_error < b.length_error;
+/// The user's context for work on several threads: one call at a time, and while `batch` is raised no progress of the
+/// parts, only of the whole.
+Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
+                const std::shared_ptr<std::atomic<bool>>& batch) {
+  Context shared = context;
+  if (context.note) {
+    shared.note = [note = context.note, turn](std::string_view message) {
+      const std::lock_guard lock(*turn);
+      note(message);
+    };
+  }
+  if (context.progress) {
+    shared.progress = [progress = context.progress, turn, batch](std::string_view stage, double done) {
+      if (*batch) return;
+      const std::lock_guard lock(*turn);
+      progress(stage, done);
+    };
+  }
+  return shared;
 }
 
 }  // namespace
 
 struct PathSolver::Impl {
+  Impl(Surface surface_of, const PathOptions& options_of, const Context& user_of)
+      : surface(std::move(surface_of)),
+        options(options_of),
+        user(user_of),
+        context(in_turn(user, turn, batch)),
+        finder(surface, options, context) {}
+
+  using Corrector = detail::Corrector;
+  using Starts = detail::Starts;
+
   Surface surface;
   PathOptions options;
-  Context context;
-  detail::CellLevels levels;
+  Context user;
+  std::shared_ptr<std::mutex> turn = std::make_shared<std::mutex>();
+  std::shared_ptr<std::atomic<bool>> batch = std::make_shared<std::atomic<bool>>(false);
+  Context context;  // the user's, fit for several threads
+  detail::StartFinder finder;
 
-  std::vector<StartPath> starts(PathResult& result, int level);
-  std::vector<StartPath> ways_round(PathResult& result, SurfaceCells& cells, const DistanceField& from_p);
-  void correct(PathResult& result) const;
-  bool correct_all(PathResult& result, const std::vector<StartPath>& starts) const;
-  bool apart(int level, const Vector& p, const Vector& q);
-  PathResult between(const Vector& p, const Vector& q);
+  [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
+  [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
+                                   std::optional<Starts> first = std::nullopt) const;
+  /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
+  [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
+                                                const std::function<PathResult(Index, Corrector&)>& body);
 };
 
 PathSolver::PathSolver(Surface surface, PathOptions options, Context context) {
   check_options(options);
-  detail::CellLevels levels(surface, options.grid, options.cell, context);
-  impl_.reset(new Impl{std::move(surface), options, std::move(context), std::move(levels)});
+  impl_ = std::make_unique<Impl>(std::move(surface), options, context);
 }
 PathSolver::~PathSolver() = default;
 PathSolver::PathSolver(PathSolver&&) noexcept = default;
@@ -114,125 +107,9 @@ PathSolver& PathSolver::operator=(PathSolver&&) noexcept = default;
 
 const Surface& PathSolver::surface() const { return impl_->surface; }
 
-/// Ways from result.from to result.to to start from, by the cells of one level; none when no way was found.
-std::vector<StartPath> PathSolver::Impl::starts(PathResult& result, int level) {
-  if (!levels.exist()) {
-    const Stopwatch watch;
-    Points walk = detail::walk_towards(surface, result.from, result.to);
-    result.seconds.march += watch.seconds();
-    if (walk.cols() < 2) return {};
-    const double length = polyline_length(walk);
-    return {{length, std::move(walk)}};
-  }
-  const Stopwatch cells_watch;
-  SurfaceCells& cells = levels.cells(level, chord(result.from, result.to));
-  result.seconds.cells += cells_watch.seconds();
-  const Stopwatch watch;
-  MarchOptions march_options{.method = options.march};
-  if (!options.all) march_options.target = result.to;
-  const DistanceField from_p = march(surface, cells, result.from, march_options, context);
-  result.seconds.march += watch.seconds();
-  return ways_round(result, cells, from_p);
-}
-
-/// The same where the distances from result.from are there already, up to those at result.to.
-std::vector<StartPath> PathSolver::Impl::ways_round(PathResult& result, SurfaceCells& cells,
-                                                    const DistanceField& from_p) {
-  const Stopwatch watch;
-  result.cell = cells.grid().size();
-  std::vector<StartPath> paths;
-  const double distance = distance_at(surface, cells, from_p, result.to)(0);
-  if (std::isfinite(distance)) {
-    const bool rivals = options.march == MarchMethod::convergent && options.method != CorrectionMethod::grid;
-    if (rivals && (options.all || distance > kNoRivals * result.cell)) {
-      MarchOptions march_options{.method = options.march};
-      if (!options.all) march_options.target = result.from;
-      const DistanceField from_q = march(surface, cells, result.to, march_options, context);
-      paths = start_paths(surface, cells, from_p, from_q,
-                          {.excess = options.all ? std::numeric_limits<double>::infinity() : kExcess,
-                           .max_paths = options.all ? kMostWaysRound : kMostRivals});
-    }
-    if (paths.empty()) {
-      Points descent = descend(surface, cells, from_p, result.to);
-      if (descent.cols() >= 2) paths.push_back({distance, std::move(descent)});
-    }
-  }
-  result.num_cells = cells.num_cells();
-  result.seconds.march += watch.seconds();
-  return paths;
-}
-
-/// Replaces the Geodesic part of `result` by the corrected grid path.
-void PathSolver::Impl::correct(PathResult& result) const {
-  const Stopwatch watch;
-  Geodesic& geodesic = result;
-  switch (options.method) {
-    case CorrectionMethod::newton:
-      geodesic = correct_newton(surface, result.grid_path, NewtonOptions{.tolerance = options.tolerance}, context);
-      break;
-    case CorrectionMethod::flow:
-      geodesic =
-          correct_flow(surface, result.grid_path,
-                       FlowOptions{.spacing = options.spacing, .cell = result.cell, .beta = options.beta}, context);
-      break;
-    case CorrectionMethod::grid:
-      geodesic = Geodesic{};
-      geodesic.points = result.grid_path;
-      geodesic.length = polyline_length(result.grid_path);
-      geodesic.length_error = std::numeric_limits<double>::infinity();  // nothing is known about it
-      geodesic.status = Status::ok;
-      break;
-  }
-  result.message = std::string(geodesic.reason);
-  result.seconds.correct += watch.seconds();
-  const double grid_length = polyline_length(result.grid_path);
-  if (result.status == Status::ok && result.length > kMostGrowth * grid_length) {
-    result.status = Status::not_converged;
-    result.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
-                                 result.length, grid_length);
-  }
-}
-
-/// Corrects every start that may lead to the shortest path; the best becomes `result`, with the others as candidates.
-/// False when a start that promised a clearly shorter path has not led to one.
-bool PathSolver::Impl::correct_all(PathResult& result, const std::vector<StartPath>& starts) const {
-  std::optional<PathResult> best;
-  std::vector<PathCandidate> candidates;
-  double march_error = kMarchError;
-  for (const StartPath& start : starts) {
-    const bool hopeless = best && best->status == Status::ok && start.length > best->length * (1 + march_error);
-    if (hopeless && !options.all) break;
-    result.grid_path = start.points;
-    correct(result);
-    if (result.status == Status::ok) {
-      march_error = std::max(march_error, kMarchErrorFactor * (start.length / result.length - 1));
-      detail::add_candidate(candidates, {result.length, result.length_error, result.locally_shortest, result.points});
-      if (best && best->status == Status::ok && result.length >= best->length) continue;
-    } else if (best && (best->status == Status::ok || best->length_error <= result.length_error)) {
-      continue;
-    }
-    best = result;
-  }
-  const PathSeconds seconds = result.seconds;
-  result = *std::move(best);
-  result.seconds = seconds;
-  result.candidates = std::move(candidates);
-  result.unique = detail::first_is_unique(result.candidates, options.tolerance);
-  return result.status == Status::ok && result.length <= (1 + kDoubt) * starts.front().length;
-}
-
-/// True when the cells of p and q lie in different components of all cells, which is a proof where the surface has
-/// interval bounds.
-bool PathSolver::Impl::apart(int level, const Vector& p, const Vector& q) {
-  SurfaceCells& cells = levels.cells(level, chord(p, q));
-  const Index i = cells.cell_at(p);
-  const Index j = cells.cell_at(q);
-  if (i == CellGrid::kNone || j == CellGrid::kNone) return false;
-  const std::vector<std::int32_t> label = components(cells.grid()).label;
-  return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
-}
-
-PathResult PathSolver::Impl::between(const Vector& p, const Vector& q) {
+/// `first`: starts of level 0, when they are there already.
+PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector& corrector,
+                                     std::optional<Starts> first) const {
   PathResult result;
   result.from = p;
   result.to = q;
@@ -241,40 +118,52 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q) {
     result.locally_shortest = true;
     result.points = chord(p, q);
     result.grid_path = result.points;
-    result.cell = levels.size(0);
+    result.cell = levels().size(0);
     return result;
+  }
+  const auto take = [&](const Starts& starts) {
+    result.cell = starts.cell;
+    if (starts.cells) result.num_cells = starts.cells->num_cells();
+    result.seconds.cells += starts.seconds.cells;
+    result.seconds.march += starts.seconds.march;
+  };
+  if (!first) {
+    const Starts starts = finder.find_by_table(p, q);
+    take(starts);
+    if (!starts.paths.empty() && corrector.correct(result, starts)) return result;
   }
   // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
   std::optional<PathResult> best;
-  for (int level = 0; level < levels.num_levels(); ++level) {
-    std::vector<StartPath> found;
+  for (int level = 0; level < levels().num_levels(); ++level) {
+    Starts starts;
     try {
-      found = starts(result, level);
+      starts = level == 0 && first ? *std::move(first) : finder.find(p, q, level);
     } catch (const OutOfMemory&) {
       if (level == 0) throw;
       break;
     }
-    if (found.empty() && !levels.exist()) {
+    take(starts);
+    if (starts.paths.empty() && !levels().exist()) {
       result.message = fmt::format(
           "no start path: in {} dimensions there are no cells to search, and a walk straight "
           "towards the end gets stuck",
           surface.dim());
       return result;
     }
-    if (found.empty()) {
-      if (apart(level, p, q)) {
+    if (starts.paths.empty()) {
+      if (detail::StartFinder::apart(*starts.cells, p, q)) {
         result.status = Status::disconnected;
         result.message = "the two points lie on different components of the surface";
         return result;
       }
       context.tell(fmt::format("cells of {:.3g} cannot tell the sheets of the surface apart; trying finer ones",
-                               levels.size(level)));
+                               levels().size(level)));
       continue;
     }
-    const bool sure = correct_all(result, found);
+    const bool sure = corrector.correct(result, starts);
     const bool second_try = best.has_value();
-    if (!best || is_better(result, *best)) best = result;
+    if (!best || detail::is_better(result, *best)) best = result;
     best->seconds = result.seconds;
     // Within a cell the start is as good as it gets.
     if (sure || second_try || (p - q).norm() < result.cell) break;
@@ -287,73 +176,102 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q) {
   return *std::move(best);
 }
 
-PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
-  detail::check_point(impl_->surface, p, "start");
-  detail::check_point(impl_->surface, q, "end");
-  impl_->levels.prepare(chord(p, q));
-  const Vector from = impl_->levels.on_surface(p, "start");
-  const Vector to = impl_->levels.on_surface(q, "end");
-  return impl_->between(from, to);
+std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
+                                                  const std::function<PathResult(Index, Corrector&)>& body) {
+  constexpr Index kBlock = 8;
+  std::vector<PathResult> results(static_cast<std::size_t>(n));
+  Context threads = user;
+  if (!parallel) threads.threads = 1;
+  std::atomic<Index> done = 0;
+  *batch = true;
+  try {
+    detail::parallel_for(threads, 0, n, kBlock, [&](Index first, Index last) {
+      Corrector corrector(surface, options, context);
+      for (Index j = first; j < last; ++j) {
+        PathResult& result = results[static_cast<std::size_t>(j)];
+        try {
+          result = body(j, corrector);
+        } catch (const Cancelled&) {
+          throw;
+        } catch (const Error& error) {
+          result = PathResult{};
+          result.message = error.what();
+        }
+      }
+      const Index so_far = done += last - first;
+      const std::lock_guard lock(*turn);
+      user.report("paths", static_cast<double>(so_far) / static_cast<double>(n));
+    });
+  } catch (...) {
+    *batch = false;
+    throw;
+  }
+  *batch = false;
+  return results;
 }
 
-/// As solve, with what is wrong with the request as the result's message.
-PathResult PathSolver::solve_or_explain(const VectorIn& p, const VectorIn& q) {
-  try {
-    return solve(p, q);
-  } catch (const Cancelled&) {
-    throw;
-  } catch (const Error& error) {
-    PathResult result;
-    result.from = p;
-    result.to = q;
-    result.message = error.what();
-    return result;
+PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
+  Impl& impl = *impl_;
+  detail::check_point(impl.surface, p, "start");
+  detail::check_point(impl.surface, q, "end");
+  impl.finder.prepare(chord(p, q));
+  Impl::Corrector corrector(impl.surface, impl.options, impl.context);
+  return impl.between(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+}
+
+void PathSolver::expect(const PointsIn& near, Index num_pairs) {
+  Impl& impl = *impl_;
+  impl.finder.prepare(finite_columns(near, impl.surface.dim()));
+  impl.finder.tabulate(num_pairs);
+}
+
+std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const PointsIn& to) {
+  Impl& impl = *impl_;
+  if (from.cols() != to.cols() || from.rows() != to.rows()) {
+    throw InvalidArgument(fmt::format("starts ({} x {}) and ends ({} x {}) do not make pairs", from.rows(), from.cols(),
+                                      to.rows(), to.cols()));
   }
+  Points both(from.rows(), 2 * from.cols());
+  both << from, to;
+  expect(both, from.cols());
+  return impl.for_all(from.cols(), true, [&](Index j, Impl::Corrector& corrector) {
+    detail::check_point(impl.surface, from.col(j), "start");
+    detail::check_point(impl.surface, to.col(j), "end");
+    return impl.between(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
+                        corrector);
+  });
 }
 
 std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn& targets) {
   Impl& impl = *impl_;
   detail::check_point(impl.surface, p, "start");
-  impl.levels.prepare(with_finite_columns(p, targets));
-  const Vector from = impl.levels.on_surface(p, "start");
-  if (!impl.levels.exist()) {
-    std::vector<PathResult> results;
-    for (Index j = 0; j < targets.cols(); ++j) results.push_back(solve_or_explain(p, targets.col(j)));
-    return results;
+  Points all(p.size(), 1 + (targets.rows() == p.size() ? targets.cols() : 0));
+  all << p, targets.leftCols(all.cols() - 1);
+  impl.finder.prepare(finite_columns(all, impl.surface.dim()));
+  const Vector from = impl.levels().on_surface(p, "start");
+  const auto target = [&](Index j) {
+    detail::check_point(impl.surface, targets.col(j), "end");
+    return impl.levels().on_surface(targets.col(j), "end");
+  };
+  if (!impl.levels().exist()) {
+    return impl.for_all(targets.cols(), true,
+                        [&](Index j, Impl::Corrector& corrector) { return impl.between(from, target(j), corrector); });
   }
   PathSeconds shared;
-  const Stopwatch cells_watch;
-  SurfaceCells& cells = impl.levels.cells(0, from);
-  shared.cells = cells_watch.seconds();
-  const Stopwatch march_watch;
-  const DistanceField field =
-      march(impl.surface, cells, from, MarchOptions{.method = impl.options.march, .target = {}}, impl.context);
-  shared.march = march_watch.seconds();
-
-  std::vector<PathResult> results(static_cast<std::size_t>(targets.cols()));
-  for (Index j = 0; j < targets.cols(); ++j) {
-    PathResult& result = results[static_cast<std::size_t>(j)];
-    result.from = from;
-    result.to = targets.col(j);
-    try {
-      detail::check_point(impl.surface, targets.col(j), "end");
-      result.to = impl.levels.on_surface(targets.col(j), "end");
-      const std::vector<StartPath> starts = impl.ways_round(result, cells, field);
-      const bool sure = !starts.empty() && result.to != from && impl.correct_all(result, starts);
-      // What the shared field cannot answer gets the whole treatment: finer cells, and the reason.
-      if (!sure) result = impl.between(from, result.to);
-      if (j == 0) {
-        result.seconds.cells += shared.cells;
-        result.seconds.march += shared.march;
-      }
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error& error) {
-      result.status = Status::not_converged;
-      result.points.resize(0, 0);
-      result.message = error.what();
-    }
-    impl.context.report("paths", static_cast<double>(j + 1) / static_cast<double>(targets.cols()));
+  detail::Stopwatch watch;
+  const std::shared_ptr<SurfaceCells> cells = impl.finder.cells(0, from);
+  shared.cells = watch.restart();
+  const DistanceField field = impl.finder.march_all(*cells, from);
+  shared.march = watch.seconds();
+  // Lazy cells grow while they are marched on: one at a time.
+  std::vector<PathResult> results =
+      impl.for_all(targets.cols(), !cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
+        const Vector to = target(j);
+        return impl.between(from, to, corrector, impl.finder.continue_to(cells, field, to));
+      });
+  if (!results.empty()) {
+    results.front().seconds.cells += shared.cells;
+    results.front().seconds.march += shared.march;
   }
   return results;
 }

@@ -14,7 +14,7 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
   levels.prepare(Points(surface.dim(), 0));
   // Cells chosen for marching are too coarse to look at.
   const int level = options.cell > 0 ? 0 : 1;
-  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(level, Points(surface.dim(), 0)).grid(), {}, context);
+  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(level, Points(surface.dim(), 0))->grid(), {}, context);
   if (mesh.faces.cols() == 0)
     throw EmptySurface("the surface has no piece that these cells can show; try a smaller one");
   return mesh;

@@ -33,7 +33,8 @@ SurfaceSummary summarise(const Surface& surface, double cell, const Context& con
   detail::CellLevels levels(surface, GridMethod::automatic, cell, context);
   const Points nowhere(surface.dim(), 0);
   levels.prepare(nowhere);
-  const SurfaceCells& cells = levels.cells(0, nowhere);
+  const std::shared_ptr<SurfaceCells> shared = levels.cells(0, nowhere);
+  const SurfaceCells& cells = *shared;
 
   SurfaceSummary summary;
   summary.kind = surface.kind();

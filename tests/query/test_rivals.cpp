@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 #include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -50,6 +51,38 @@ TEST(Rivals, ShortestIsGlobalAtTheCutLocusOfTheReferences) {
     ++count;
   }
   EXPECT_GT(count, 100);
+}
+
+// Many pairs share a table of distances instead of marching for each.
+TEST(Rivals, PairsByTheTableAreTheGlobalMinimaToo) {
+  const Surface torus = test::torus(1, 0.4);
+  constexpr Index kPairs = 600;
+  constexpr unsigned kSeed = 11;
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> angle(0, 2 * pi);
+  Points from(3, kPairs);
+  Points to(3, kPairs);
+  for (Points* points : {&from, &to}) {
+    for (Index j = 0; j < kPairs; ++j) {
+      const double u = angle(random);
+      const double v = angle(random);
+      const double r = 1 + 0.4 * std::cos(v);
+      points->col(j) = Eigen::Vector3d(r * std::cos(u), r * std::sin(u), 0.4 * std::sin(v));
+    }
+  }
+  PathSolver many(torus);
+  const std::vector<PathResult> paths = many.solve_pairs(from, to);
+  PathSolver single(torus);
+  for (Index j = 0; j < kPairs; j += 12) {
+    const PathResult& path = paths[static_cast<std::size_t>(j)];
+    ASSERT_EQ(path.status, Status::ok) << path.message;
+    EXPECT_NEAR(path.length, single.solve(from.col(j), to.col(j)).length, 1e-9 * path.length)
+        << "seed " << kSeed << " pair " << j;
+  }
+  // The number of threads changes nothing.
+  PathSolver one_thread(torus, {}, Context{.threads = 1});
+  const std::vector<PathResult> again = one_thread.solve_pairs(from, to);
+  for (std::size_t j = 0; j < again.size(); ++j) EXPECT_EQ(again[j].length, paths[j].length) << j;
 }
 
 // GeographicLib's triaxial geodesics: x^2/2.25 + y^2 + z^2/0.25 = 1 from (1.5 cos w, sin w, 0), w = 20 deg to w = -50

@@ -87,15 +87,24 @@ class PathSolver {
   /// Properties: starts exactly at `from` and ends at `to`; length >= |p - q|; p = q gives length 0.
   [[nodiscard]] PathResult solve(const VectorIn& p, const VectorIn& q);
 
-  /// From p to every column of `targets` (d x n) over one marched field. A target that cannot be answered carries its
-  /// status and message; only a bad p throws.
+  /// Between column j of `from` and column j of `to` (d x n each), on all cores; the number of threads changes no
+  /// result. A pair that cannot be answered carries its status and message. Throws InvalidArgument when the shapes
+  /// differ, EmptySurface, OutOfMemory for cells that all need, and Cancelled.
+  [[nodiscard]] std::vector<PathResult> solve_pairs(const PointsIn& from, const PointsIn& to);
+
+  /// From p to every column of `targets` (d x n) over one marched field, on all cores. A target that cannot be answered
+  /// carries its status and message; only a bad p throws.
   [[nodiscard]] std::vector<PathResult> solve_from(const VectorIn& p, const PointsIn& targets);
+
+  /// Says that about `num_pairs` pairs of points near these (d x n) will be asked for: cells are made, and where that
+  /// pays, a table of distances between a few hundred places, after which starts take microseconds instead of
+  /// milliseconds. solve_pairs does it for its own pairs; call it when they come in several parts.
+  void expect(const PointsIn& near, Index num_pairs);
 
   [[nodiscard]] const Surface& surface() const;
 
  private:
   struct Impl;
-  PathResult solve_or_explain(const VectorIn& p, const VectorIn& q);
   std::unique_ptr<Impl> impl_;
 };
 

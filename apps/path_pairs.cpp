@@ -1,0 +1,142 @@
+#include "path_pairs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "batch_output.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/io/csv_rows.hpp"
+#include "terminal.hpp"
+
+namespace taut::app {
+namespace {
+
+/// Pairs in one go: enough for all cores, and no more than half a second's work to lose.
+constexpr Index kFirstChunk = 256;
+constexpr Index kLargestChunk = 8192;
+constexpr double kChunkSeconds = 0.5;
+
+/// How many pairs there are and where they lie, so that neither how they are cut into chunks nor how often they were
+/// resumed has a say in any result.
+struct Survey {
+  Index count = 0;
+  Points corners;  // d x 2
+};
+
+Survey survey(const std::string& file, Index d) {
+  Survey found;
+  found.corners.resize(d, 2);
+  found.corners.col(0).setConstant(std::numeric_limits<double>::infinity());
+  found.corners.col(1).setConstant(-std::numeric_limits<double>::infinity());
+  CsvRows rows(file);
+  for (CsvRow row; rows.next(row); ++found.count) {
+    if (!row.problem.empty() || static_cast<Index>(row.values.size()) != 2 * d) continue;
+    const Eigen::Map<const Points> ends(row.values.data(), d, 2);
+    found.corners.col(0) = found.corners.col(0).cwiseMin(ends.rowwise().minCoeff());
+    found.corners.col(1) = found.corners.col(1).cwiseMax(ends.rowwise().maxCoeff());
+  }
+  return found;
+}
+
+/// Some lines of the file: what they ask for, or what is wrong with them.
+struct Chunk {
+  std::vector<std::size_t> lines;
+  std::vector<std::string> problems;
+  Points from, to;  // d x n, NaN where there is a problem
+};
+
+Chunk read_chunk(CsvRows& rows, Index d, Index size) {
+  Chunk chunk;
+  chunk.from.setConstant(d, size, std::numeric_limits<double>::quiet_NaN());
+  chunk.to = chunk.from;
+  Index count = 0;
+  for (CsvRow row; count < size && rows.next(row); ++count) {
+    std::string problem = row.problem;
+    if (problem.empty() && static_cast<Index>(row.values.size()) != 2 * d) {
+      problem = fmt::format("{} numbers; a pair takes {}, p1,...,pd,q1,...,qd", row.values.size(), 2 * d);
+    }
+    if (problem.empty()) {
+      chunk.from.col(count) = Eigen::Map<const Vector>(row.values.data(), d);
+      chunk.to.col(count) = Eigen::Map<const Vector>(row.values.data() + d, d);
+    }
+    chunk.lines.push_back(row.line);
+    chunk.problems.push_back(std::move(problem));
+  }
+  chunk.from.conservativeResize(d, count);
+  chunk.to.conservativeResize(d, count);
+  return chunk;
+}
+
+/// One line that stands for the request: a file of results made under another one is not continued.
+std::string request_line(const PairsRequest& request) {
+  std::error_code ignored;
+  const auto size = std::filesystem::file_size(request.file, ignored);
+  const auto time = std::filesystem::last_write_time(request.file, ignored).time_since_epoch().count();
+  const PathOptions& options = request.options;
+  std::string line =
+      fmt::format("taut path {} --pairs {} ({} bytes, {}) {} {} {} {} {} {} {}", request.surface, request.file, size,
+                  time, to_string(options.method), static_cast<int>(options.march), static_cast<int>(options.grid),
+                  options.cell, options.tolerance, options.spacing, options.beta);
+  std::ranges::replace(line, '\n', ' ');
+  return line;
+}
+
+}  // namespace
+
+ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const Context& context) {
+  const Index d = surface.dim();
+  const Survey found = survey(request.file, d);
+  const std::unique_ptr<BatchOutput> output = request.out
+                                                  ? std::make_unique<BatchOutput>(*request.out, request_line(request))
+                                                  : std::make_unique<BatchOutput>();
+  bool all_ok = !output->some_failed();
+  CsvRows rows(request.file);
+  Index done = 0;
+  const auto num_earlier = static_cast<Index>(output->num_done());
+  for (CsvRow row; done < num_earlier && rows.next(row);) ++done;
+  if (done > 0)
+    context.tell(fmt::format("going on after {} of {} pairs, which an earlier run has answered", done, found.count));
+
+  // Inside a chunk the bar shows the whole.
+  Context whole = context;
+  if (context.progress) {
+    whole.progress = [&](std::string_view stage, double) {
+      context.progress(stage, found.count > 0 ? static_cast<double>(done) / static_cast<double>(found.count) : 1);
+    };
+  }
+  PathSolver solver(surface, request.options, whole);
+  if (found.corners.allFinite()) solver.expect(found.corners, found.count);
+  Index size = kFirstChunk;
+  using Clock = std::chrono::steady_clock;
+  for (;;) {
+    const Chunk chunk = read_chunk(rows, d, size);
+    if (chunk.lines.empty()) break;
+    const auto start = Clock::now();
+    const std::vector<PathResult> results = solver.solve_pairs(chunk.from, chunk.to);
+    std::string lines;
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      const PathResult& result = results[k];
+      lines += path_csv(result) + "\n";
+      if (result.status == Status::ok) continue;
+      all_ok = false;
+      const std::string& problem = chunk.problems[k].empty() ? result.message : chunk.problems[k];
+      print_error(fmt::format("{} line {}: {}", request.file, chunk.lines[k], problem));
+    }
+    output->write(lines);
+    done += static_cast<Index>(results.size());
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    const double fitting = static_cast<double>(chunk.lines.size()) * kChunkSeconds / std::max(seconds, 1e-3);
+    size = std::clamp(static_cast<Index>(fitting), Index{8}, std::min(kLargestChunk, 2 * size));
+  }
+  output->finish();
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+}  // namespace taut::app

@@ -1,0 +1,254 @@
+#include "taut/march/distance_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <utility>
+
+#include "core/memory_limit.hpp"
+#include "core/parallel.hpp"
+#include "march/dimensions.hpp"
+#include "march/edge.hpp"
+#include "march/stencil.hpp"
+#include "taut/core/error.hpp"
+#include "taut/march/march.hpp"
+
+namespace taut {
+namespace {
+
+/// Landmarks lie no farther than this from any way, in spacings.
+constexpr double kOffset = 0.7;
+/// Landmarks this close to an end, in spacings, say nothing about ways.
+constexpr double kEndSpacings = 1;
+/// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
+constexpr double kSameWaySpacings = 0.8;
+constexpr double kSameWay = 0.2;
+
+/// Two cells lie on the same side of the surface if their normals turn by less than this (cosine).
+constexpr double kSameSide = 0.5;
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+}  // namespace
+
+struct DistanceTable::View {
+  Vector x;
+  Index cell = CellGrid::kNone;
+  std::vector<float> distance;  // to every landmark
+};
+
+DistanceTable::DistanceTable(const Surface& surface, SurfaceCells cells, Index num_landmarks, const Context& context)
+    : cells_(std::move(cells)) {
+  if (cells_.is_lazy() || cells_.dim() != surface.dim() || num_landmarks < 1) {
+    throw InvalidArgument("a distance table needs complete cells of the surface and at least one landmark");
+  }
+  choose_landmarks(num_landmarks);
+  link_cells();
+  const std::size_t size =
+      static_cast<std::size_t>(cells_.num_cells()) * landmarks_.size() * static_cast<std::size_t>(cells_.dim() + 1);
+  if (size * sizeof(float) > detail::memory_limit(context))
+    throw OutOfMemory("the distance table does not fit the memory");
+  table_.resize(size);
+  fill(surface, context);
+}
+
+/// Cells no closer to each other than the spacing, which is adapted until their number fits.
+void DistanceTable::choose_landmarks(Index count) {
+  spacing_ = cells_.grid().size();
+  for (;;) {
+    landmarks_.clear();
+    for (Index i = 0; i < cells_.num_cells(); ++i) {
+      if (!cells_.valid(i)) continue;
+      const auto near = [&](Index other) {
+        return (cells_.point(i) - cells_.point(other)).squaredNorm() < spacing_ * spacing_ && same_side(i, other);
+      };
+      if (std::none_of(landmarks_.begin(), landmarks_.end(), near)) landmarks_.push_back(i);
+    }
+    if (num_landmarks() <= count) return;
+    const double dim = static_cast<double>(cells_.dim() - cells_.codim());
+    spacing_ *= std::max(1.05, std::pow(static_cast<double>(num_landmarks()) / static_cast<double>(count), 1 / dim));
+  }
+}
+
+void DistanceTable::link_cells() {
+  const Index d = cells_.dim();
+  first_link_.assign(1, 0);
+  detail::Stencil stencil(d);
+  detail::with_dimensions(d, cells_.codim(), [&]<int D, int K>() {
+    detail::Edge<D> edge;
+    const auto point = [&](Index i) { return detail::SurfacePoint{cells_.point(i).data(), cells_.normals(i).data()}; };
+    for (Index i = 0; i < cells_.num_cells(); ++i) {
+      if (cells_.valid(i)) {
+        for (const Index j : stencil.block(cells_.grid(), cells_.grid().cell(i))) {
+          if (j == i || !cells_.valid(j) || !detail::make_edge<D, K>(point(j), point(i), d, cells_.codim(), edge))
+            continue;
+          links_.push_back(static_cast<std::uint32_t>(j));
+        }
+      }
+      first_link_.push_back(static_cast<std::uint32_t>(links_.size()));
+    }
+  });
+}
+
+void DistanceTable::fill(const Surface& surface, const Context& context) {
+  const std::size_t n = landmarks_.size();
+  const auto d = static_cast<std::size_t>(cells_.dim());
+  Context inner = context;
+  inner.progress = nullptr;
+  std::mutex progress;
+  Index done = 0;
+  detail::parallel_for(context, 0, num_landmarks(), 1, [&](Index first, Index last) {
+    for (Index l = first; l < last; ++l) {
+      const DistanceField field =
+          march(surface, cells_, cells_.point(landmarks_[static_cast<std::size_t>(l)]), {}, inner);
+      for (Index i = 0; i < cells_.num_cells(); ++i) {
+        float* entries = table_.data() + static_cast<std::size_t>(i) * n * (d + 1) + static_cast<std::size_t>(l);
+        *entries = static_cast<float>(field.distance(i));
+        for (std::size_t axis = 0; axis < d; ++axis) {
+          entries[(axis + 1) * n] = static_cast<float>(field.gradient(static_cast<Index>(axis), i));
+        }
+      }
+      const std::lock_guard lock(progress);
+      context.report("table", static_cast<double>(++done) / static_cast<double>(num_landmarks()));
+    }
+  });
+}
+
+std::size_t DistanceTable::bytes() const {
+  return table_.capacity() * sizeof(float) + (links_.capacity() + first_link_.capacity()) * sizeof(std::uint32_t) +
+         landmarks_.capacity() * sizeof(Index) + cells_.bytes();
+}
+
+/// The valid cell around x whose point is nearest.
+Index DistanceTable::nearest_cell(const VectorIn& x) const {
+  std::vector<std::int32_t> cell(static_cast<std::size_t>(cells_.dim()));
+  cells_.grid().cell_of(x, cell);
+  detail::Stencil stencil(cells_.dim());
+  Index nearest = CellGrid::kNone;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Index i : stencil.block(cells_.grid(), cell)) {
+    const double distance = (cells_.point(i) - x).squaredNorm();
+    if (!cells_.valid(i) || !(distance < least)) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+DistanceTable::View DistanceTable::look(const VectorIn& x) const {
+  View view{x, nearest_cell(x), {}};
+  if (view.cell == CellGrid::kNone) return view;
+  const std::size_t n = landmarks_.size();
+  const float* distance = row(view.cell);
+  const Eigen::VectorXf step = (x - cells_.point(view.cell)).cast<float>();
+  view.distance.assign(n, 0);
+  for (Index axis = 0; axis < cells_.dim(); ++axis) {
+    const float* gradient = distance + static_cast<std::size_t>(axis + 1) * n;
+    for (std::size_t l = 0; l < n; ++l) view.distance[l] += step(axis) * gradient[l];
+  }
+  // Exact for a point source in the plane.
+  const float step2 = step.squaredNorm();
+  for (std::size_t l = 0; l < n; ++l) {
+    const float u = distance[l];
+    view.distance[l] = u < kFar ? std::sqrt(std::max(0.0F, u * u + 2 * u * view.distance[l] + step2)) : kFar;
+  }
+  return view;
+}
+
+/// Steepest descent from a cell to a landmark, from cell to cell.
+void DistanceTable::walk(Index cell, std::size_t landmark, std::vector<Index>& way) const {
+  way.push_back(cell);
+  for (;;) {
+    const auto links = std::span(links_).subspan(
+        first_link_[static_cast<std::size_t>(cell)],
+        first_link_[static_cast<std::size_t>(cell) + 1] - first_link_[static_cast<std::size_t>(cell)]);
+    const float here = row(cell)[landmark];
+    double least = std::numeric_limits<double>::infinity();
+    Index next = CellGrid::kNone;
+    for (const Index j : links) {
+      const float there = row(j)[landmark];
+      if (!(there < here)) continue;
+      const double length = there + (cells_.point(j) - cells_.point(cell)).norm();
+      if (length < least) {
+        least = length;
+        next = j;
+      }
+    }
+    if (next == CellGrid::kNone) return;
+    way.push_back(next);
+    cell = next;
+  }
+}
+
+/// The cells of the way from one point past a landmark to the other; empty when there is none.
+std::vector<Index> DistanceTable::way_past(const View& from, const View& to, std::size_t landmark) const {
+  std::vector<Index> there;
+  std::vector<Index> back;
+  walk(from.cell, landmark, there);
+  walk(to.cell, landmark, back);
+  if (there.back() != landmarks_[landmark] || back.back() != landmarks_[landmark]) return {};
+  there.insert(there.end(), back.rbegin() + 1, back.rend());
+  return there;
+}
+
+/// True when the way runs past cell i, on the same side of the surface, within a distance.
+bool DistanceTable::passes(const std::vector<Index>& way, Index i, double distance) const {
+  return std::any_of(way.begin(), way.end(), [&](Index j) {
+    return (cells_.point(i) - cells_.point(j)).squaredNorm() < distance * distance && same_side(i, j);
+  });
+}
+
+bool DistanceTable::same_side(Index i, Index j) const {
+  if (cells_.codim() == 1) return cells_.normals(i).col(0).dot(cells_.normals(j).col(0)) > kSameSide;
+  return (cells_.normals(i).transpose() * cells_.normals(j)).squaredNorm() >
+         static_cast<double>(cells_.codim() - 1) + kSameSide * kSameSide;
+}
+
+std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const VectorIn& q,
+                                                  const StartPathOptions& options) const {
+  std::vector<StartPath> paths;
+  const View from = look(p);
+  const View to = look(q);
+  if (from.distance.empty() || to.distance.empty()) return paths;
+  struct Passing {
+    float length;
+    std::size_t landmark;
+  };
+  // Landmarks on the way, the middle ones of most use.
+  const double near_end = kEndSpacings * spacing_;
+  std::vector<Passing> passing;
+  float shortest = kFar;
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) shortest = std::min(shortest, from.distance[l] + to.distance[l]);
+  if (!(shortest < kFar) || shortest < 4 * near_end) return paths;
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) {
+    const double a = from.distance[l];
+    const double b = to.distance[l];
+    if (!(std::min(a, b) > near_end) || !(a + b < kFar)) continue;
+    const double detour = std::pow(kOffset * spacing_, 2) / 2 * (1 / a + 1 / b);
+    if (a + b - detour <= (1 + options.excess) * shortest) passing.push_back({static_cast<float>(a + b), l});
+  }
+  std::sort(passing.begin(), passing.end(), [](const Passing& a, const Passing& b) {
+    return a.length < b.length || (a.length == b.length && a.landmark < b.landmark);
+  });
+  std::vector<std::vector<Index>> ways;
+  for (const Passing& candidate : passing) {
+    if (static_cast<Index>(paths.size()) >= options.max_paths) break;
+    const double lever = std::min(from.distance[candidate.landmark], to.distance[candidate.landmark]);
+    const double same = std::max(kSameWaySpacings * spacing_, kSameWay * lever);
+    const Index landmark = landmarks_[candidate.landmark];
+    if (std::ranges::any_of(ways, [&](const auto& way) { return passes(way, landmark, same); })) continue;
+    std::vector<Index> way = way_past(from, to, candidate.landmark);
+    if (way.empty()) continue;
+    // The cells of the ends themselves may lie behind them.
+    Points points(cells_.dim(), std::max<Index>(2, static_cast<Index>(way.size())));
+    for (Index i = 1; i + 1 < points.cols(); ++i) points.col(i) = cells_.point(way[static_cast<std::size_t>(i)]);
+    points.col(0) = p;
+    points.col(points.cols() - 1) = q;
+    paths.push_back({candidate.length, std::move(points)});
+    ways.push_back(std::move(way));
+  }
+  return paths;
+}
+
+}  // namespace taut

@@ -1,0 +1,147 @@
+#include "query/corrector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "curve/polyline.hpp"
+#include "query/candidates.hpp"
+#include "query/stopwatch.hpp"
+#include "taut/curve/flow.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// A corrected path is never much longer than its start; one that is has jumped somewhere.
+constexpr double kMostGrowth = 1.1;
+/// Starts are corrected as long as they may turn out the shortest, the marched distances being this wrong, or this many
+/// times as wrong as those of the ways corrected before...
+constexpr double kMarchError = 0.1;
+constexpr double kMarchErrorFactor = 3;
+/// ... while a path this much longer than what was marched has missed the way that the march has seen.
+constexpr double kDoubt = 0.03;
+/// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
+constexpr double kRoughTolerance = 1e-3;
+constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
+
+PathCandidate candidate_of(const Geodesic& geodesic) {
+  return {geodesic.length, geodesic.length_error, geodesic.locally_shortest, geodesic.points};
+}
+
+/// Of starts shortest first, how far down the list it is worth going.
+class Hope {
+ public:
+  [[nodiscard]] bool is_lost(const StartPath& start) const { return start.length > shortest_ * (1 + march_error_); }
+  void found(const StartPath& start, double length) {
+    shortest_ = std::min(shortest_, length);
+    march_error_ = std::max(march_error_, kMarchErrorFactor * (start.length / length - 1));
+  }
+
+ private:
+  double shortest_ = std::numeric_limits<double>::infinity();
+  double march_error_ = kMarchError;
+};
+
+}  // namespace
+
+Corrector::Corrector(const Surface& surface, const PathOptions& options, const Context& context)
+    : surface_(surface), options_(options), context_(context) {}
+
+Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
+  Corrected corrected{{}, {}, start};
+  Geodesic& geodesic = corrected.geodesic;
+  const double start_length = polyline_length(start);
+  switch (options_.method) {
+    case CorrectionMethod::newton:
+      if (!newton_) newton_.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
+      geodesic = newton_->solve(start, context_);
+      break;
+    case CorrectionMethod::flow:
+      geodesic =
+          correct_flow(surface_, start, {.spacing = options_.spacing, .cell = cell, .beta = options_.beta}, context_);
+      break;
+    case CorrectionMethod::grid:
+      geodesic.points = start;
+      geodesic.length = start_length;
+      geodesic.length_error = std::numeric_limits<double>::infinity();  // nothing is known about it
+      geodesic.status = Status::ok;
+      break;
+  }
+  corrected.message = std::string(geodesic.reason);
+  if (geodesic.status == Status::ok && geodesic.length > kMostGrowth * start_length) {
+    geodesic.status = Status::not_converged;
+    corrected.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
+                                    geodesic.length, start_length);
+  }
+  return corrected;
+}
+
+/// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once; those that do not
+/// converge as they are.
+std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& starts) {
+  if (!rough_) rough_.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
+  std::vector<PathCandidate> rough;
+  std::vector<StartPath> found;
+  Hope hope;
+  double bound = std::numeric_limits<double>::infinity();  // the shortest is no longer than this
+  for (const StartPath& start : starts) {
+    if (hope.is_lost(start)) break;
+    const NewtonResult geodesic = rough_->solve(start.points, context_);
+    if (geodesic.status != Status::ok) {
+      found.push_back(start);
+      continue;
+    }
+    hope.found(start, geodesic.length);
+    PathCandidate candidate = candidate_of(geodesic);
+    candidate.length_error = std::max(candidate.length_error, kLeastRoughError * candidate.length);
+    bound = std::min(bound, candidate.length + candidate.length_error);
+    add_candidate(rough, std::move(candidate));
+  }
+  const bool converged = !rough.empty();
+  std::vector<StartPath> result;
+  for (PathCandidate& candidate : rough) {
+    if (candidate.length - candidate.length_error > bound) continue;
+    result.push_back({candidate.length, std::move(candidate.points)});
+  }
+  // What did not converge roughly hardly ever will; but when nothing has, the reason must be found out.
+  if (!converged) result = std::move(found);
+  return result;
+}
+
+bool Corrector::correct(PathResult& result, const Starts& starts) {
+  const Stopwatch watch;
+  const bool selects = options_.method == CorrectionMethod::newton && !options_.all && starts.paths.size() > 1;
+  const std::vector<StartPath> chosen = selects ? contenders(starts.paths) : starts.paths;
+  std::optional<Corrected> best;
+  std::vector<PathCandidate> candidates;
+  Hope hope;
+  for (const StartPath& start : chosen) {
+    if (!options_.all && hope.is_lost(start)) break;
+    Corrected corrected = shorten(start.points, starts.cell);
+    const Geodesic& geodesic = corrected.geodesic;
+    if (geodesic.status == Status::ok) {
+      hope.found(start, geodesic.length);
+      add_candidate(candidates, candidate_of(geodesic));
+    }
+    if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
+  }
+  static_cast<Geodesic&>(result) = std::move(best->geodesic);
+  result.message = std::move(best->message);
+  result.grid_path = std::move(best->start);
+  result.candidates = std::move(candidates);
+  result.unique = first_is_unique(result.candidates, options_.tolerance);
+  result.seconds.correct += watch.seconds();
+  return result.status == Status::ok && result.length <= (1 + kDoubt) * starts.paths.front().length;
+}
+
+bool is_better(const Geodesic& a, const Geodesic& b) {
+  const bool a_ok = a.status == Status::ok;
+  const bool b_ok = b.status == Status::ok;
+  if (a_ok != b_ok) return a_ok;
+  return a_ok ? a.length < b.length : a.length_error < b.length_error;
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "query/start_finder.hpp"
+#include "taut/curve/newton.hpp"
+#include "taut/query/path.hpp"
+
+namespace taut::detail {
+
+/// Shortens starts to geodesics by the method asked for, and tells which is the shortest. One thread's.
+class Corrector {
+ public:
+  Corrector(const Surface& surface, const PathOptions& options, const Context& context);
+
+  /// Corrects every start that may lead to the shortest path. The best one becomes the Geodesic part of `result`, the
+  /// others its candidates. False when the outcome is in doubt: nothing converged, or a start that promised a clearly
+  /// shorter path has not led to one.
+  [[nodiscard]] bool correct(PathResult& result, const Starts& starts);
+
+ private:
+  struct Corrected {
+    Geodesic geodesic;
+    std::string message;
+    Points start;
+  };
+
+  [[nodiscard]] Corrected shorten(const Points& start, double cell);
+  [[nodiscard]] std::vector<StartPath> contenders(const std::vector<StartPath>& starts);
+
+  const Surface& surface_;
+  const PathOptions& options_;
+  const Context& context_;
+  std::optional<NewtonSolver> rough_;
+  std::optional<NewtonSolver> newton_;
+};
+
+/// A converged geodesic before any other, then the shorter one; of those not converged the one that came nearer.
+[[nodiscard]] bool is_better(const Geodesic& a, const Geodesic& b);
+
+}  // namespace taut::detail

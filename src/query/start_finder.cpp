@@ -1,0 +1,178 @@
+#include "query/start_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "query/cell_size.hpp"
+#include "query/stopwatch.hpp"
+#include "query/walk_towards.hpp"
+#include "taut/cells/components.hpp"
+#include "taut/curve/newton.hpp"
+#include "taut/march/descend.hpp"
+#include "taut/march/march.hpp"
+
+namespace taut::detail {
+namespace {
+
+constexpr Index kMostRivals = 16;
+constexpr Index kMostWaysRound = 64;
+
+// The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
+constexpr double kTableTurn = 0.8;   // most that the normal turns from one of its cells to the next, radians  // most
+                                     // that the normal turns from one of its cells to the next, radians
+constexpr double kRefinement = 1.4;  // the next finer size
+constexpr double kFewestCells = 400;
+constexpr double kFewestLandmarks = 200;
+constexpr double kLandmarksPerTurn2 = 0.08;
+// How wrong it is, is measured on a few ways.
+constexpr Index kCalibrationWays = 24;
+constexpr double kCalibrationTolerance = 1e-3;
+constexpr double kSafety = 2;
+constexpr double kLeastTableError = 0.01;
+/// A table is made when it costs less than this part of marching from both ends of each pair.
+constexpr double kWorthwhile = 0.2;
+
+Points ends(const Vector& p, const Vector& q) {
+  Points x(p.size(), 2);
+  x << p, q;
+  return x;
+}
+
+double length_of(const Points& x) {
+  return (x.rightCols(x.cols() - 1) - x.leftCols(x.cols() - 1)).colwise().norm().sum();
+}
+
+}  // namespace
+
+StartFinder::StartFinder(const Surface& surface, const PathOptions& options, const Context& context)
+    : surface_(surface), options_(options), context_(context), levels_(surface, options.grid, options.cell, context) {}
+
+std::shared_ptr<SurfaceCells> StartFinder::cells(int level, const PointsIn& seeds) const {
+  return levels_.cells(level, seeds);
+}
+
+void StartFinder::tabulate(Index num_pairs) {
+  if (!levels_.exist()) return;
+  const Index dim = surface_.dim() - surface_.codim();
+  const bool suits = dim == 2 && options_.march == MarchMethod::convergent && !options_.all && options_.cell == 0 &&
+                     options_.method != CorrectionMethod::grid;
+  if (levels_.lazy()) return;
+  const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
+  if (table_ || !suits) return;
+  const auto num_fine = static_cast<double>(fine->num_valid());
+  // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
+  std::shared_ptr<SurfaceCells> coarse;
+  double turn = 0;
+  for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); coarser > 1; coarser /= kRefinement) {
+    coarse = levels_.subdivided(coarser * levels_.size(0));
+    if (!coarse) return;
+    turn = normal_turn(*coarse);
+    if (turn <= kTableTurn) break;
+    coarse = nullptr;
+  }
+  if (!coarse) {
+    coarse = levels_.subdivided(levels_.size(0));
+    if (!coarse) return;
+    turn = normal_turn(*coarse);
+  }
+  const auto num_cells = static_cast<double>(coarse->num_valid());
+  const double num_landmarks =
+      std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
+  if (num_landmarks * num_cells > kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine) return;
+  table_.emplace(surface_, std::move(*coarse), static_cast<Index>(num_landmarks), context_);
+  calibrate();
+}
+
+/// Finds out how wrong the table is, on ways between landmarks far apart.
+void StartFinder::calibrate() {
+  NewtonSolver newton(surface_, {.tolerance = kCalibrationTolerance});
+  const Index n = table_->num_landmarks();
+  double worst = 0;
+  for (Index i = 0; i < kCalibrationWays; ++i) {
+    const Index from = i * n / kCalibrationWays;
+    const Vector p = table_->landmark(from);
+    const Vector q = table_->landmark((from + n / 2) % n);
+    for (const StartPath& start : table_->start_paths(p, q, {.excess = kLeastTableError, .max_paths = 1})) {
+      const NewtonResult geodesic = newton.solve(start.points, context_);
+      if (geodesic.status == Status::ok) worst = std::max(worst, std::abs(start.length / geodesic.length - 1));
+    }
+  }
+  table_error_ = std::clamp(kSafety * worst, kLeastTableError, kExcess);
+}
+
+Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {
+  Starts starts;
+  if (!table_) return starts;
+  const Stopwatch watch;
+  starts.paths = table_->start_paths(p, q, {.excess = table_error_, .max_paths = kMostRivals});
+  starts.cell = table_->cells().grid().size();
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
+  Stopwatch watch;
+  if (!levels_.exist()) {
+    Starts starts;
+    Points walk = walk_towards(surface_, p, q);
+    starts.seconds.march = watch.seconds();
+    if (walk.cols() >= 2) {
+      const double length = length_of(walk);
+      starts.paths.push_back({length, std::move(walk)});
+    }
+    return starts;
+  }
+  const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
+  const double cells_seconds = watch.restart();
+  MarchOptions march_options{.method = options_.march};
+  if (!options_.all) march_options.target = q;
+  const DistanceField from_p = march(surface_, *cells, p, march_options, context_);
+  const double march_seconds = watch.restart();
+  Starts starts = continue_to(cells, from_p, q);
+  starts.seconds.cells += cells_seconds;
+  starts.seconds.march += march_seconds;
+  return starts;
+}
+
+DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {
+  return march(surface_, cells, p, MarchOptions{.method = options_.march}, context_);
+}
+
+Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
+                                const Vector& q) const {
+  const Stopwatch watch;
+  Starts starts;
+  starts.cell = cells->grid().size();
+  const double distance = distance_at(surface_, *cells, from_p, q)(0);
+  if (std::isfinite(distance)) {
+    const bool rivals = options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
+    if (rivals && (options_.all || distance > kNoRivals * starts.cell)) {
+      MarchOptions march_options{.method = options_.march};
+      if (!options_.all) march_options.target = from_p.sources.col(0);
+      const DistanceField from_q = march(surface_, *cells, q, march_options, context_);
+      starts.paths = start_paths(surface_, *cells, from_p, from_q,
+                                 {.excess = options_.all ? std::numeric_limits<double>::infinity() : kExcess,
+                                  .max_paths = options_.all ? kMostWaysRound : kMostRivals});
+    }
+    if (starts.paths.empty()) {
+      Points descent = descend(surface_, *cells, from_p, q);
+      if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
+    }
+  }
+  starts.cells = std::move(cells);
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+bool StartFinder::apart(SurfaceCells& cells, const Vector& p, const Vector& q) {
+  const Index i = cells.cell_at(p);
+  const Index j = cells.cell_at(q);
+  if (i == CellGrid::kNone || j == CellGrid::kNone) return false;
+  for (Index c = 0; cells.is_lazy() && c < cells.num_cells(); ++c) cells.expand(c);
+  const std::vector<std::int32_t> label = components(cells.grid()).label;
+  return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "query/cell_levels.hpp"
+#include "taut/march/distance_field.hpp"
+#include "taut/march/distance_table.hpp"
+#include "taut/march/start_paths.hpp"
+#include "taut/query/path.hpp"
+
+namespace taut::detail {
+
+/// Starts between two points, and the cells they were found on.
+struct Starts {
+  std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
+  std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
+  double cell = 0;                      ///< h
+  PathSeconds seconds;
+};
+
+/// Finds ways between points of one surface to start corrections from. After `prepare`, the const members may be called
+/// from several threads.
+class StartFinder {
+ public:
+  /// Ways up to this part longer than the shortest, by the marched distances, are rivals.
+  static constexpr double kExcess = 0.15;
+  /// Within this many cells of each other two points have no rivals between them.
+  static constexpr double kNoRivals = 4;
+
+  StartFinder(const Surface& surface, const PathOptions& options, const Context& context);
+
+  /// Makes sure that the points near (d x n) lie where cells are looked for.
+  void prepare(const PointsIn& near) { levels_.prepare(near); }
+  /// Makes the cells of level 0, and a table of distances where that pays for `num_pairs` pairs.
+  void tabulate(Index num_pairs);
+
+  [[nodiscard]] const CellLevels& levels() const { return levels_; }
+  /// Ways by the table, in microseconds. None where there is no table or it cannot tell.
+  [[nodiscard]] Starts find_by_table(const Vector& p, const Vector& q) const;
+  /// Ways by marching on the cells of one level.
+  [[nodiscard]] Starts find(const Vector& p, const Vector& q, int level) const;
+  /// The distances from p over all cells of level 0, for `continue_to`.
+  [[nodiscard]] DistanceField march_all(SurfaceCells& cells, const Vector& p) const;
+  /// Ways where the distances from p are there already, at least up to q.
+  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
+                                   const Vector& q) const;
+  /// The cells of a level, shared unless they are lazy.
+  [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;
+
+  /// True when p and q lie in different components of the cells that found no way, which is a proof where the surface
+  /// has interval bounds.
+  [[nodiscard]] static bool apart(SurfaceCells& cells, const Vector& p, const Vector& q);
+
+ private:
+  void calibrate();
+
+  const Surface& surface_;
+  const PathOptions& options_;
+  const Context& context_;
+  mutable CellLevels levels_;  // makes cells when they are first asked for, under its own lock
+  std::optional<DistanceTable> table_;
+  double table_error_ = 0;  // of the lengths by the table, relative
+};
+
+}  // namespace taut::detail

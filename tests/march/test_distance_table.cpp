@@ -1,0 +1,96 @@
+#include "taut/march/distance_table.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "support.hpp"
+#include "taut/cells/subdivide.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut {
+namespace {
+
+using std::numbers::pi;
+
+SurfaceCells cells_in_box(const Surface& surface, double size, double reach) {
+  const Vector corner = Vector::Constant(surface.dim(), reach);
+  return {surface, subdivide(surface, {.size = size, .box = Box{-corner, corner}, .origin = {}})};
+}
+
+TEST(DistanceTable, StartsAreAsLongAsTheDistanceOnTheSphere) {
+  const Surface sphere = test::unit_sphere();
+  const DistanceTable table(sphere, cells_in_box(sphere, 0.18, 1.3), 200);
+  EXPECT_LE(table.num_landmarks(), 200);
+  EXPECT_GE(table.num_landmarks(), 80);
+  constexpr unsigned kSeed = 5;
+  std::mt19937 random(kSeed);
+  int answered = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const Vector p = test::random_unit(3, random);
+    const Vector q = test::random_unit(3, random);
+    const std::vector<StartPath> paths = table.start_paths(p, q);
+    if (paths.empty()) {
+      EXPECT_LT(test::sphere_distance(p, q), 7 * table.spacing()) << "seed " << kSeed << " trial " << trial;
+      continue;
+    }
+    ++answered;
+    EXPECT_NEAR(paths[0].length, test::sphere_distance(p, q), 0.04 * paths[0].length)
+        << "seed " << kSeed << " trial " << trial;
+    EXPECT_TRUE(std::is_sorted(paths.begin(), paths.end(),
+                               [](const StartPath& a, const StartPath& b) { return a.length < b.length; }));
+    for (const StartPath& path : paths) {
+      EXPECT_EQ(path.points.col(0), p);
+      EXPECT_EQ(path.points.rightCols(1), q);
+    }
+  }
+  EXPECT_GT(answered, 100);
+}
+
+TEST(DistanceTable, OppositePointsHaveSeveralStarts) {
+  const Surface sphere = test::unit_sphere();
+  const DistanceTable table(sphere, cells_in_box(sphere, 0.18, 1.3), 200);
+  const Vector p = Eigen::Vector3d(0.6, 0, 0.8);
+  EXPECT_GE(table.start_paths(p, -p).size(), 4U);
+  EXPECT_EQ(table.start_paths(p, -p, {.max_paths = 2}).size(), 2U);
+}
+
+// The two sides of a plate: the ways over the top and under the bottom are a plate's thickness apart.
+TEST(DistanceTable, TellsTheSidesOfAPlateApart) {
+  const Surface plate = test::ellipsoid(1, 1, 0.2);
+  const DistanceTable table(plate, cells_in_box(plate, 0.06, 1.3), 300);
+  const std::vector<StartPath> paths =
+      table.start_paths(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 0), {.excess = 0.03, .max_paths = 16});
+  bool over = false;
+  bool under = false;
+  for (const StartPath& path : paths) {
+    const auto middle = path.points.col(path.points.cols() / 2);
+    over = over || middle(2) > 0.05;
+    under = under || middle(2) < -0.05;
+  }
+  EXPECT_TRUE(over);
+  EXPECT_TRUE(under);
+}
+
+TEST(DistanceTable, ThreadsDoNotChangeIt) {
+  const Surface torus = test::torus();
+  const DistanceTable one(torus, cells_in_box(torus, 0.15, 1.6), 100, Context{.threads = 1});
+  const DistanceTable two(torus, cells_in_box(torus, 0.15, 1.6), 100, Context{.threads = 2});
+  const Vector p = Eigen::Vector3d(1.4, 0, 0);
+  const Vector q = Eigen::Vector3d(-1, 0, 0.4);
+  const std::vector<StartPath> a = one.start_paths(p, q);
+  const std::vector<StartPath> b = two.start_paths(p, q);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].points, b[i].points);
+}
+
+TEST(DistanceTable, RefusesWhatItCannotUse) {
+  const Surface sphere = test::unit_sphere();
+  const Vector p = Eigen::Vector3d(0, 0, 1);
+  EXPECT_THROW(DistanceTable(sphere, SurfaceCells::lazy(sphere, p, 0.2), 10), InvalidArgument);
+  EXPECT_THROW(DistanceTable(sphere, cells_in_box(sphere, 0.2, 1.3), 0), InvalidArgument);
+  EXPECT_THROW(DistanceTable(sphere, cells_in_box(sphere, 0.05, 1.3), 1000, Context{.memory_limit = 1 << 20}),
+               OutOfMemory);
+}
+
+}  // namespace
+}  // namespace taut
