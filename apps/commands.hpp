@@ -21,6 +21,7 @@ struct CommonArguments {
 // Each declares one command with its options and returns what runs it.
 Run add_path_command(CLI::App& app);
 Run add_field_command(CLI::App& app);
+Run add_exp_command(CLI::App& app);
 Run add_fit_command(CLI::App& app);
 Run add_mesh_command(CLI::App& app);
 Run add_info_command(CLI::App& app);

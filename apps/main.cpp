@@ -25,6 +25,7 @@ constexpr const char* kFooter =
     "  taut path 'x^2+y^2+4z^2=1' --from 1,0,0 --to 0,0,0.5\n"
     "  taut path scan.ply --from @120 --to @2411 --out page.html\n"
     "  taut field 'x^4+y^4+z^4=1' --from 1,0,0 --out field.ply\n"
+    "  taut exp 'x^2+y^2+4z^2=1' --from 1,0,0 --dir 0,1,1 --length 2\n"
     "Exit codes: 0 done, 1 some lines of a batch failed, 2 wrong usage, 3 bad input, 4 no path,\n"
     "5 not converged, 70 internal error, 130 interrupted. 'taut COMMAND --help' tells more.";
 
@@ -94,7 +95,8 @@ int run_program(int argc, char** argv) {
   app.fallthrough(false);
 
   std::vector<std::pair<CLI::App*, Run>> commands;
-  for (const auto add : {add_path_command, add_field_command, add_fit_command, add_mesh_command, add_info_command}) {
+  for (const auto add :
+       {add_path_command, add_field_command, add_exp_command, add_fit_command, add_mesh_command, add_info_command}) {
     Run run = add(app);
     commands.emplace_back(app.get_subcommands(nullptr).back(), std::move(run));
   }

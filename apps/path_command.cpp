@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -17,6 +18,7 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
+#include "taut/curve/verify.hpp"
 #include "taut/io/csv_rows.hpp"
 #include "taut/query/path.hpp"
 
@@ -34,6 +36,7 @@ struct PathArguments {
   PictureArguments picture;
   std::vector<std::string> out;
   bool json = false;
+  bool verify = false;
 };
 
 class Timer {
@@ -45,6 +48,28 @@ class Timer {
   Clock::time_point start_ = Clock::now();
 };
 
+/// Follows the path from its start as a ray and reports where it lands.
+void add_verification(const Surface& surface, const PathResult& result, const Context& context,
+                      nlohmann::ordered_json& json, std::vector<SceneFact>& facts) {
+  json["verify"] = nullptr;
+  if (result.start_direction.size() == 0) {
+    facts.push_back({"verify", "no direction to start in"});
+    return;
+  }
+  const Verification found =
+      verify_geodesic(surface, result.from, result.start_direction, result.length, result.to, context);
+  const auto number = [](double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; };
+  json["verify"] = {{"status", to_string(found.status)},
+                    {"miss", number(found.miss)},
+                    {"miss_along", number(found.miss_along)},
+                    {"error", number(found.error)},
+                    {"amplification", number(found.amplification)}};
+  facts.push_back(
+      {"verify", fmt::format("followed as a ray it misses the end by {:.1e}, {:.1e} of it along; rays spread "
+                             "by {:.3g} ({})",
+                             found.miss, std::abs(found.miss_along), found.amplification, to_string(found.status))});
+}
+
 ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
                  const Timer& timer) {
   PathSolver solver(surface, arguments.options, context);
@@ -53,8 +78,9 @@ ExitCode run_one(const PathArguments& arguments, const Surface& surface, const C
   const PathResult result = solver.solve(p, q);
   clear_progress();
   const double total = timer.seconds();
-  const auto json = path_json(surface, result, arguments.options, surface_seconds, total);
-  const std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  auto json = path_json(surface, result, arguments.options, surface_seconds, total);
+  std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  if (arguments.verify) add_verification(surface, result, context, json, facts);
   if (arguments.json) {
     std::cout << json.dump() << "\n";
   } else {
@@ -161,6 +187,9 @@ ExitCode run(const PathArguments& arguments) {
   if (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty())) {
     throw UsageError("give --from with --to, or --from with --to-file, or --pairs (see taut path --help)");
   }
+  if (arguments.verify && (!one || arguments.options.method != CorrectionMethod::newton)) {
+    throw UsageError("--verify is for one path found by --method newton");
+  }
   check_outputs(arguments.out, OutputKind::path);
   if (pairs && (arguments.out.size() > 1 || (arguments.out.size() == 1 && !arguments.out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
@@ -204,6 +233,8 @@ Run add_path_command(CLI::App& app) {
       ->check(positive_number());
   command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number());
   command.add_flag("--all", options.all, "look for every way round, and report each of them");
+  command.add_flag("--verify", arguments->verify,
+                   "follow the path as an initial-value problem, and say where it lands");
   command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
   command
       .add_option("--out", arguments->out,

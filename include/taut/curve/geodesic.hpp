@@ -25,6 +25,7 @@ struct Geodesic {
   int num_iterations = 0;
   /// d x m in order, first and last exactly the end points given, every one on the surface: what to draw or write.
   Points points;
+  Vector start_direction;  ///< d: the unit tangent at the start, of a spectral curve; empty where there is none
   /// Why the status is not ok, in a few words for people; empty when it is.
   std::string_view reason;
 };

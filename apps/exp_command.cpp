@@ -1,0 +1,228 @@
+// taut exp: a geodesic from a point in a direction, or many of them.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "checks.hpp"
+#include "commands.hpp"
+#include "load_surface.hpp"
+#include "output.hpp"
+#include "points_argument.hpp"
+#include "report.hpp"
+#include "taut/core/error.hpp"
+#include "taut/io/csv_rows.hpp"
+#include "taut/query/ray.hpp"
+
+namespace taut::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct ExpArguments {
+  CommonArguments common;
+  SurfaceArguments surface;
+  std::string from;
+  std::string direction;
+  std::optional<double> length;
+  std::string rays;
+  ExponentialOptions options;
+  bool no_conjugate = false;
+  PictureArguments picture;
+  std::vector<std::string> out;
+  bool json = false;
+};
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
+
+Json ray_json(const Surface& surface, const RayResult& result, double asked, double seconds) {
+  Json json;
+  json["command"] = "exp";
+  json["status"] = to_string(result.status);
+  if (!result.message.empty()) json["message"] = result.message;
+  json["surface"] = {{"kind", surface.kind()}, {"dim", surface.dim()}, {"codim", surface.codim()}};
+  json["from"] = vector_json(result.from);
+  json["point"] = vector_json(result.point);
+  json["direction"] = vector_json(result.direction);
+  json["length"] = result.length;
+  json["length_asked"] = asked;
+  json["converged"] = result.status == Status::ok;
+  json["error"] = number(result.error);
+  json["direction_error"] = number(result.direction_error);
+  json["amplification"] = number(result.amplification);
+  json["conjugate_at"] = result.conjugate_at ? Json(*result.conjugate_at) : Json(nullptr);
+  json["conjugate_searched"] = result.conjugate_searched;
+  json["steps"] = result.num_steps;
+  json["seconds"] = seconds;
+  json["points"] = Json::array();
+  for (Index j = 0; j < result.points.cols(); ++j) json["points"].push_back(vector_json(result.points.col(j)));
+  return json;
+}
+
+std::string coordinates(const VectorIn& x) {
+  constexpr Index kShown = 10;
+  std::string text;
+  for (Index i = 0; i < std::min(x.size(), kShown); ++i) text += fmt::format("{}{:.15g}", i > 0 ? "," : "", x(i));
+  return x.size() > kShown ? text + fmt::format(",... ({} coordinates)", x.size()) : text;
+}
+
+std::vector<SceneFact> ray_facts(const RayResult& result) {
+  std::vector<SceneFact> facts;
+  facts.push_back({"point", fmt::format("{} +- {:.1e}", coordinates(result.point), result.error)});
+  facts.push_back({"direction", fmt::format("{} +- {:.1e}", coordinates(result.direction), result.direction_error)});
+  facts.push_back({"length", fmt::format("{:.15g}", result.length)});
+  std::string status(to_string(result.status));
+  if (!result.message.empty()) status += ": " + result.message;
+  facts.push_back({"status", status});
+  if (result.conjugate_at) {
+    facts.push_back({"conjugate", fmt::format("first at {:.15g}", *result.conjugate_at)});
+  } else {
+    facts.push_back({"conjugate", result.conjugate_searched != 0 || result.length == 0 ? "none" : "not looked for"});
+  }
+  facts.push_back({"spread", fmt::format("an error at the start grows by up to {:.3g}", result.amplification)});
+  return facts;
+}
+
+ExitCode run_one(const ExpArguments& arguments, const Surface& surface, const Context& context) {
+  RaySolver solver(surface, arguments.options, context);
+  const Vector from = parse_point(arguments.from, "--from", surface);
+  const Vector direction = parse_numbers(arguments.direction, "--dir");
+  const auto begin = std::chrono::steady_clock::now();
+  const RayResult result = solver.solve(from, direction, *arguments.length);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  clear_progress();
+  const Json json = ray_json(surface, result, *arguments.length, seconds);
+  const std::vector<SceneFact> facts = ray_facts(result);
+  if (arguments.json) {
+    std::cout << json.dump() << "\n";
+  } else {
+    std::cout << facts_text(facts);
+  }
+  PathResult drawn;
+  drawn.from = result.from;
+  drawn.to = result.point;
+  drawn.length = std::abs(result.length);
+  drawn.points = result.points;
+  write_paths(arguments.out,
+              {.surface = surface,
+               .paths = {&drawn},
+               .json = json,
+               .facts = facts,
+               .title = arguments.surface.surface,
+               .up = arguments.picture.up},
+              context);
+  if (result.status != Status::ok) print_error(fmt::format("{}: {}", to_string(result.status), result.message));
+  return exit_code(result.status);
+}
+
+/// A ray as a line; one that stopped early, or never began, has no end point.
+std::string ray_csv(const RayResult& result, Index d, double asked) {
+  std::string line;
+  const bool arrived = result.point.size() == d && result.length == asked;
+  for (const Vector* vector : {&result.point, &result.direction}) {
+    for (Index i = 0; i < d; ++i) line += arrived ? fmt::format("{},", (*vector)(i)) : "nan,";
+  }
+  if (arrived) {
+    line += fmt::format("{},{}", std::max(result.error, result.direction_error), to_string(result.status));
+  } else {
+    line += fmt::format("inf,{}", to_string(result.status));
+  }
+  return line;
+}
+
+/// Line k in, line k out, a bounded number of them at a time; a failed line carries its reason and the rest goes on.
+ExitCode run_rays(const ExpArguments& arguments, const Surface& surface, const Context& context) {
+  constexpr Index kAtOnce = 4096;
+  const Index d = surface.dim();
+  CsvRows rows(arguments.rays);
+  ExponentialOptions options = arguments.options;
+  options.conjugate = false;
+  options.points = false;
+  RaySolver solver(surface, options, context);
+  bool all_ok = true;
+  Index count = 0;
+  for (bool more = true; more;) {
+    std::vector<CsvRow> block;
+    for (CsvRow row; static_cast<Index>(block.size()) < kAtOnce && (more = rows.next(row));) block.push_back(row);
+    const auto n = static_cast<Index>(block.size());
+    Points from = Points::Zero(d, n);
+    Points directions = Points::Zero(d, n);
+    Vector lengths = Vector::Zero(n);
+    for (Index j = 0; j < n; ++j) {
+      CsvRow& row = block[static_cast<std::size_t>(j)];
+      if (row.problem.empty() && static_cast<Index>(row.values.size()) != 2 * d + 1) {
+        row.problem = fmt::format("{} numbers; a ray takes {}, p1,...,pd,v1,...,vd,s", row.values.size(), 2 * d + 1);
+      }
+      if (!row.problem.empty()) continue;  // its zero direction is refused below
+      from.col(j) = Eigen::Map<const Vector>(row.values.data(), d);
+      directions.col(j) = Eigen::Map<const Vector>(row.values.data() + d, d);
+      lengths(j) = row.values.back();
+    }
+    const std::vector<RayResult> results = solver.solve_many(from, directions, lengths);
+    for (Index j = 0; j < n; ++j) {
+      const RayResult& result = results[static_cast<std::size_t>(j)];
+      const CsvRow& row = block[static_cast<std::size_t>(j)];
+      if (result.status != Status::ok) {
+        all_ok = false;
+        print_error(fmt::format("{} line {}: {}", arguments.rays, row.line,
+                                row.problem.empty() ? result.message : row.problem));
+      }
+      std::cout << ray_csv(result, d, lengths(j)) << "\n";
+    }
+    context.report("rays", -static_cast<double>(count += n));
+  }
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+ExitCode run(ExpArguments arguments) {
+  const bool one = !arguments.from.empty() && !arguments.direction.empty() && arguments.length;
+  const bool rays = !arguments.rays.empty();
+  const bool any = !arguments.from.empty() || !arguments.direction.empty() || arguments.length;
+  if (one == rays || (rays && any)) {
+    throw UsageError("give --from, --dir and --length, or --rays (see taut exp --help)");
+  }
+  if (rays && (arguments.json || !arguments.out.empty())) {
+    throw UsageError("--rays writes its lines to stdout; --json and --out are for one ray");
+  }
+  check_outputs(arguments.out, OutputKind::path);
+  arguments.options.conjugate = !arguments.no_conjugate;
+  const Context context = terminal_context(arguments.common.terminal);
+  const Surface surface = load_surface(arguments.surface, context);
+  return one ? run_one(arguments, surface, context) : run_rays(arguments, surface, context);
+}
+
+}  // namespace
+
+Run add_exp_command(CLI::App& app) {
+  auto arguments = std::make_shared<ExpArguments>();
+  CLI::App& command = *app.add_subcommand("exp", "geodesic from a point in a direction");
+  arguments->surface.add_to(command);
+  command.add_option("--from", arguments->from, "start: 1,0,0, or @17 for the 17th sample from 0");
+  command.add_option("--dir", arguments->direction, "direction: 0,1,0; its part tangent to the surface counts");
+  command.add_option("--length", arguments->length, "how far to go; negative: the other way")->check(any_number());
+  command.add_option("--rays", arguments->rays,
+                     "rays p1,...,pd,v1,...,vd,s, one a line; writes q1,...,qd,w1,...,wd,error,status");
+  command.add_option("--tol", arguments->options.tolerance, "error a step may add (default: rounding)")
+      ->check(number_between(0, 1e-3));
+  command.add_option("--steps", arguments->options.max_steps, "give up after this many steps")
+      ->check(number_between(1, 1e9))
+      ->capture_default_str();
+  command.add_flag("--no-conjugate", arguments->no_conjugate,
+                   "do not look for conjugate points: faster in many dimensions");
+  command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
+  command
+      .add_option("--out", arguments->out,
+                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::path))
+      ->allow_extra_args(false);
+  arguments->picture.add_to(command);
+  arguments->common.add_to(command);
+  return [arguments] { return run(*arguments); };
+}
+
+}  // namespace taut::app

@@ -1,0 +1,26 @@
+#include "taut/curve/verify.hpp"
+
+#include <string>
+
+#include "taut/core/error.hpp"
+#include "taut/curve/exponential_map.hpp"
+
+namespace taut {
+
+Verification verify_geodesic(const Surface& surface, const VectorIn& from, const VectorIn& direction, double length,
+                             const VectorIn& to, const Context& context) {
+  if (to.size() != surface.dim()) {
+    throw InvalidArgument("the end has " + std::to_string(to.size()) + " coordinates, the surface lies in " +
+                          std::to_string(surface.dim()) + " dimensions");
+  }
+  const ExponentialResult ray =
+      exponential_map(surface, from, direction, length, {.conjugate = false, .points = false}, context);
+  const Vector gap = to - ray.point;
+  return {.status = ray.status,
+          .miss = gap.norm(),
+          .miss_along = gap.dot(ray.direction),
+          .error = ray.error,
+          .amplification = ray.amplification};
+}
+
+}  // namespace taut

@@ -1,0 +1,144 @@
+#include "taut/query/ray.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "query/cell_levels.hpp"
+#include "surface/normal_space.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/projection.hpp"
+
+namespace taut {
+namespace {
+
+/// A start that moves by less than this part of its coordinates is merely rounded: no cells are needed to judge it.
+constexpr double kRounded = 1e-6;
+/// A direction off the tangent plane by less is merely rounded, radians.
+constexpr double kTilted = std::numbers::pi / 180;
+
+void check_direction(const Surface& surface, const VectorIn& direction, double length) {
+  if (direction.size() != surface.dim()) {
+    throw InvalidArgument(fmt::format("direction {}: has {} coordinates, the surface lies in {} dimensions",
+                                      detail::text_of(direction), direction.size(), surface.dim()));
+  }
+  if (!direction.allFinite()) {
+    throw InvalidArgument(fmt::format("direction {}: coordinates must be finite", detail::text_of(direction)));
+  }
+  if (!(direction.stableNorm() > 0)) throw InvalidArgument("direction: is zero; give one to go in");
+  if (!std::isfinite(length)) throw InvalidArgument(fmt::format("length {}: must be finite", length));
+}
+
+std::string explain(const ExponentialResult& result, double length) {
+  if (result.status == Status::ok) return {};
+  if (result.length == length) return std::string(result.reason);
+  return fmt::format("{}; it stops after {:.6g}, at {}", result.reason, result.length, detail::text_of(result.point));
+}
+
+}  // namespace
+
+struct RaySolver::Impl {
+  Impl(Surface s, const ExponentialOptions& o, Context c)
+      : surface(std::move(s)),
+        options(o),
+        context(std::move(c)),
+        levels(surface, GridMethod::automatic, 0, context),
+        map(surface, options) {}
+
+  Surface surface;
+  ExponentialOptions options;
+  Context context;
+  detail::CellLevels levels;
+  ExponentialMap map;
+
+  Vector start(const VectorIn& from);
+  void tell_tilt(const Vector& from, const VectorIn& direction) const;
+};
+
+RaySolver::RaySolver(Surface surface, ExponentialOptions options, Context context)
+    : impl_(std::make_unique<Impl>(std::move(surface), options, std::move(context))) {}
+RaySolver::~RaySolver() = default;
+RaySolver::RaySolver(RaySolver&&) noexcept = default;
+RaySolver& RaySolver::operator=(RaySolver&&) noexcept = default;
+
+Vector RaySolver::Impl::start(const VectorIn& from) {
+  detail::check_point(surface, from, "start");
+  const ProjectionResult projected = project_to_surface(surface, from);
+  const double scale = std::max(from.lpNorm<Eigen::Infinity>(), projected.point.lpNorm<Eigen::Infinity>());
+  if (projected.converged && projected.distance <= kRounded * scale &&
+      surface.inside_domain(projected.point, kRounded * scale)(0)) {
+    return projected.point;
+  }
+  levels.prepare(from);
+  return levels.on_surface(from, "start");
+}
+
+void RaySolver::Impl::tell_tilt(const Vector& from, const VectorIn& direction) const {
+  const Index d = surface.dim();
+  const Index k = surface.codim();
+  const Points jacobian = surface.jacobian(from);
+  Eigen::MatrixXd q(d, k);
+  Eigen::MatrixXd r(k, k);
+  if (detail::NormalSpace<Eigen::Dynamic>::factor(d, k, jacobian.data(), q.data(), r.data()) < k) return;
+  const double tilt = std::asin(std::min(1.0, (q.transpose() * direction.stableNormalized()).norm()));
+  if (tilt > kTilted) {
+    context.tell(fmt::format("the direction points {:.3g} degrees off the surface; its tangential part is taken",
+                             tilt / std::numbers::pi * 180));
+  }
+}
+
+RayResult RaySolver::solve(const VectorIn& from, const VectorIn& direction, double length) {
+  Impl& impl = *impl_;
+  check_direction(impl.surface, direction, length);
+  RayResult result;
+  result.from = impl.start(from);
+  impl.tell_tilt(result.from, direction);
+  static_cast<ExponentialResult&>(result) = impl.map.trace(result.from, direction, length, impl.context);
+  result.message = explain(result, length);
+  return result;
+}
+
+std::vector<RayResult> RaySolver::solve_many(const PointsIn& from, const PointsIn& directions,
+                                             const VectorIn& lengths) {
+  Impl& impl = *impl_;
+  if (directions.cols() != from.cols() || lengths.size() != from.cols()) {
+    throw InvalidArgument(fmt::format("{} starts, {} directions and {} lengths: give as many of each", from.cols(),
+                                      directions.cols(), lengths.size()));
+  }
+  constexpr Index kGrain = 32;
+  std::vector<RayResult> results(static_cast<std::size_t>(from.cols()));
+  for (Index j = 0; j < from.cols(); ++j) {  // the cells that judge a start are made once
+    RayResult& result = results[static_cast<std::size_t>(j)];
+    try {
+      check_direction(impl.surface, directions.col(j), lengths(j));
+      result.from = impl.start(from.col(j));
+    } catch (const Cancelled&) {
+      throw;
+    } catch (const Error& error) {
+      result.message = error.what();
+    }
+  }
+  detail::parallel_for(impl.context, 0, from.cols(), kGrain, [&](Index first, Index last) {
+    ExponentialMap map(impl.surface, impl.options);
+    Context quiet;
+    quiet.cancel = impl.context.cancel;
+    for (Index j = first; j < last; ++j) {
+      RayResult& result = results[static_cast<std::size_t>(j)];
+      if (!result.message.empty()) continue;
+      try {
+        static_cast<ExponentialResult&>(result) = map.trace(result.from, directions.col(j), lengths(j), quiet);
+        result.message = explain(result, lengths(j));
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const Error& error) {
+        result.message = error.what();
+      }
+    }
+  });
+  return results;
+}
+
+}  // namespace taut
