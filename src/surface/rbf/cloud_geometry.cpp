@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <string>
@@ -111,17 +112,21 @@ double relative_noise(const Points& points, const Points& normals, const KdTree&
   if (d > 5 || points.cols() < 2 * neighbours) return 0;
   constexpr Index kMaxProbes = 1000;
   const Index num_probes = std::min(points.cols(), kMaxProbes);
-  Vector ratio(num_probes);
-  Eigen::MatrixXd terms(neighbours, unknowns);
-  Vector height(neighbours);
+  Vector ratio = Vector::Constant(num_probes, std::numeric_limits<double>::quiet_NaN());
   std::vector<Neighbour> found;
   for (Index probe = 0; probe < num_probes; ++probe) {
     const Index i = probe * points.cols() / num_probes;
     const Vector normal = normals.col(i);
+    // Twice as many, since half of those around a thin sheet lie on its other face.
+    tree.nearest(points.col(i).data(), 2 * neighbours, found);
+    std::erase_if(found, [&](const Neighbour& other) { return normals.col(other.index).dot(normal) <= 0; });
+    const Index used = std::min(neighbours, static_cast<Index>(found.size()));
+    if (used < 2 * unknowns) continue;
     const Eigen::MatrixXd frame = Eigen::HouseholderQR<Eigen::MatrixXd>(normal).householderQ();
-    tree.nearest(points.col(i).data(), neighbours, found);
-    const double radius = std::sqrt(found.back().squared_distance);
-    for (Index row = 0; row < neighbours; ++row) {
+    const double radius = std::sqrt(found[static_cast<std::size_t>(used - 1)].squared_distance);
+    Eigen::MatrixXd terms(used, unknowns);
+    Vector height(used);
+    for (Index row = 0; row < used; ++row) {
       const Vector u = (points.col(found[static_cast<std::size_t>(row)].index) - points.col(i)) / radius;
       const Vector t = frame.rightCols(m).transpose() * u;
       height(row) = normal.dot(u);
@@ -132,10 +137,9 @@ double relative_noise(const Points& points, const Points& normals, const KdTree&
       }
     }
     const Vector fit = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(height);
-    const double deviation =
-        std::sqrt((terms * fit - height).squaredNorm() / static_cast<double>(neighbours - unknowns));
-    // radius = 1 here, so the spacing is that of `neighbours` points in a unit ball.
-    ratio(probe) = deviation / std::pow(unit_ball_volume(static_cast<double>(m)) / static_cast<double>(neighbours),
+    const double deviation = std::sqrt((terms * fit - height).squaredNorm() / static_cast<double>(used - unknowns));
+    // radius = 1 here, so the spacing is that of `used` points in a unit ball.
+    ratio(probe) = deviation / std::pow(unit_ball_volume(static_cast<double>(m)) / static_cast<double>(used),
                                         1 / static_cast<double>(m));
   }
   return quantile(ratio, 0.1);

@@ -28,8 +28,9 @@ struct MergedPoints {
 [[nodiscard]] Vector local_spacing(const Points& points, const KdTree& tree, Index neighbours = 8);
 
 /// Standard deviation of the points along the normal about the quadrics that fit their neighbourhoods best, as a
-/// multiple of the local spacing: its 10 % quantile, since noise is everywhere but unresolved features are not. 0 where
-/// there are too few points for quadrics (or d > 5). `normals`: unit.
+/// multiple of the local spacing: its 10 % quantile, since noise is everywhere but unresolved features are not. Only
+/// neighbours that face the same way count: the two faces of a thin sheet are not noise. 0 where there are too few
+/// points for quadrics (or d > 5). `normals`: unit.
 [[nodiscard]] double relative_noise(const Points& points, const Points& normals, const KdTree& tree);
 
 /// The q-quantile, 0 <= q <= 1, of the finite entries; 0 of none.
