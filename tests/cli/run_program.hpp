@@ -28,44 +28,78 @@ struct ProgramResult {
   std::string err;
 };
 
-/// Runs the taut program with these arguments and waits for it; after a minute it is killed. `device`, if given, is
-/// where its stdout goes, and is not read back.
-inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "") {
-  constexpr std::chrono::seconds limit(60);
-  const TempFolder folder;
-  const std::string out = (folder.path() / "out").string();
-  const std::string err = (folder.path() / "err").string();
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (device.empty() ? out : device).c_str(), O_WRONLY | O_CREAT,
-                                   0600);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
-  std::vector<std::string> words = {TAUT_PROGRAM};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
-  pid_t child = 0;
-  const int error = posix_spawn(&child, TAUT_PROGRAM, &actions, nullptr, argv.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("cannot start " TAUT_PROGRAM);
-
-  ProgramResult result;
-  const auto deadline = std::chrono::steady_clock::now() + limit;
-  int status = 0;
-  while (waitpid(child, &status, WNOHANG) == 0) {
-    if (!result.timed_out && std::chrono::steady_clock::now() > deadline) {
-      kill(child, SIGKILL);
-      result.timed_out = true;
-    }
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+/// The taut program at work. Its stdout goes to a file, or to `device` if given, which is not read back.
+class RunningProgram {
+ public:
+  explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& device = "")
+      : device_(device), out_((folder_.path() / "out").string()), err_((folder_.path() / "err").string()) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (device.empty() ? out_ : device).c_str(),
+                                     O_WRONLY | O_CREAT, 0600);
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), O_WRONLY | O_CREAT, 0600);
+    std::vector<std::string> words = {TAUT_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const int error = posix_spawn(&child_, TAUT_PROGRAM, &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) throw std::runtime_error("cannot start " TAUT_PROGRAM);
   }
-  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
-  if (WIFSIGNALED(status)) result.signal = WTERMSIG(status);
-  if (device.empty()) result.out = file_bytes(out);
-  result.err = file_bytes(err);
-  return result;
+  RunningProgram(const RunningProgram&) = delete;
+  RunningProgram& operator=(const RunningProgram&) = delete;
+  ~RunningProgram() {
+    if (!ended_) {
+      kill(child_, SIGKILL);
+      waitpid(child_, nullptr, 0);
+    }
+  }
+
+  /// What it has written to stdout and stderr by now.
+  [[nodiscard]] std::string out() const { return device_.empty() ? file_bytes(out_) : ""; }
+  [[nodiscard]] std::string err() const { return file_bytes(err_); }
+
+  void send(int signal) const { kill(child_, signal); }
+
+  /// Whether it has ended; once it has, `wait` returns at once.
+  bool ended() {
+    if (!ended_) ended_ = waitpid(child_, &status_, WNOHANG) == child_;
+    return ended_;
+  }
+
+  /// Waits for its end; when the limit is over it is killed.
+  ProgramResult wait(std::chrono::seconds limit) {
+    ProgramResult result;
+    const auto deadline = std::chrono::steady_clock::now() + limit;
+    while (!ended()) {
+      if (!result.timed_out && std::chrono::steady_clock::now() > deadline) {
+        send(SIGKILL);
+        result.timed_out = true;
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    if (WIFEXITED(status_)) result.exit_code = WEXITSTATUS(status_);
+    if (WIFSIGNALED(status_)) result.signal = WTERMSIG(status_);
+    result.out = out();
+    result.err = err();
+    return result;
+  }
+
+ private:
+  TempFolder folder_;
+  std::string device_;
+  std::string out_;
+  std::string err_;
+  pid_t child_ = 0;
+  int status_ = 0;
+  bool ended_ = false;
+};
+
+/// Runs the taut program with these arguments and waits for it, a minute at most.
+inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "") {
+  return RunningProgram(arguments, device).wait(std::chrono::seconds(60));
 }
 
 }  // namespace taut::test
