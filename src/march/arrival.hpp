@@ -204,12 +204,12 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
     constexpr std::size_t kNone = static_cast<std::size_t>(-1);
     std::size_t chosen[2] = {kNone, kNone};  // with the ray to the left and to the right of x
     double least[2] = {kInfinity, kInfinity};
+    const Vec branch = frame_.lift(first.gradient);
     for (std::size_t c = 0; c < candidates_.size(); ++c) {
       const Candidate& y = candidates_[c];
-      const Vec gradient = frame_.coordinates(Map(y.gradient, d_));
-      if (gradient.dot(first.gradient) < kMinBranchCosine) continue;
-      const Vec chord = frame_.coordinates(y.chord);
-      const double miss = gradient(k) * chord(k + 1) - gradient(k + 1) * chord(k);
+      const Map gradient(y.gradient, d_);
+      if (gradient.dot(branch) < kMinBranchCosine) continue;
+      const double miss = frame_.cross(gradient, y.chord);
       // Those beside or ahead of x only where nobody is behind.
       constexpr double kBehind = 0.3;
       const double along2 = y.along * std::abs(y.along);

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <type_traits>
 #include <vector>
 
 #include "march/tangent_frame.hpp"
@@ -22,7 +21,6 @@ class NeighbourIndex {
  public:
   explicit NeighbourIndex(const SurfaceCells& cells) : cells_(cells), d_(cells.grid().dim()) {
     blocks_.assign(kMinSlots, kNoBlock);
-    if constexpr (D == Eigen::Dynamic) known_.resize(std::size_t{1} << d_);
     for (Index axis = 0; axis < dim(); ++axis) {
       shift_[axis] = block_size_;
       block_size_ += side_bits(axis);
@@ -42,44 +40,42 @@ class NeighbourIndex {
         block[axis] = cell[axis] >> side_bits(axis);
         place |= local(cell[axis], axis);
       }
-      entries_[(file_block(block) << block_size_) | place] = static_cast<std::uint32_t>(num_filed_) + 1;
+      const std::size_t b = file_block(block);
+      entries_[(b << block_size_) | place] = static_cast<std::uint32_t>(num_filed_);
+      present_[b] |= std::uint64_t{1} << place;
     }
   }
 
   /// The valid cells around cell i in a fixed order, cell i among them. Lives until the next call.
   [[nodiscard]] std::span<const Index> around(Index i) {
     const std::int32_t* cell = cells_.grid().cell(i).data();
-    // On each axis: which of the (at most two) rows of blocks, and which place in it, each of the three coordinates
-    // has.
-    std::size_t row[kMaxMarchDim][3];
-    std::size_t place[kMaxMarchDim][3];
+    // On each axis, the at most two rows of blocks that the three coordinates lie in, and which places of each.
+    Row rows[kMaxMarchDim][2];
     std::int32_t first[kMaxMarchDim];
     for (Index axis = 0; axis < dim(); ++axis) {
       first[axis] = (cell[axis] - 1) >> side_bits(axis);
-      for (int step = 0; step < 3; ++step) {
-        const std::int32_t c = cell[axis] - 1 + step;
-        row[axis][step] = static_cast<std::size_t>((c >> side_bits(axis)) - first[axis]) << axis;
-        place[axis][step] = local(c, axis);
+      rows[axis][0] = rows[axis][1] = {};
+      for (std::int32_t c = cell[axis] - 1; c <= cell[axis] + 1; ++c) {
+        Row& row = rows[axis][(c >> side_bits(axis)) - first[axis]];
+        row.shift[row.count++] = static_cast<std::uint8_t>(local(c, axis));
       }
     }
-    std::fill_n(known_.begin(), std::size_t{1} << dim(), kUnknown);
     found_.clear();
-    int step[kMaxMarchDim] = {};
-    for (Index axis = 0; axis < dim();) {
-      std::size_t outer_row = 0;
-      std::size_t outer_place = 0;
-      for (Index a = 1; a < dim(); ++a) {
-        outer_row |= row[a][step[a]];
-        outer_place |= place[a][step[a]];
+    for (std::size_t which = 0; which < std::size_t{1} << dim(); ++which) {
+      std::uint64_t wanted = 1;  // places in the block, a bit each
+      for (Index axis = 0; axis < dim(); ++axis) {
+        const Row& row = rows[axis][(which >> axis) & 1];
+        std::uint64_t moved = 0;
+        for (int r = 0; r < row.count; ++r) moved |= wanted << row.shift[r];
+        wanted = moved;
       }
-      for (int s = 0; s < 3; ++s) {
-        const std::size_t which = outer_row | row[0][s];
-        if (known_[which] == kUnknown) known_[which] = find_block(first, which);
-        if (known_[which] == kNoBlock) continue;
-        const std::uint32_t entry = entries_[(std::size_t{known_[which]} << block_size_) | outer_place | place[0][s]];
-        if (entry != 0) found_.push_back(static_cast<Index>(entry) - 1);
+      if (wanted == 0) continue;
+      const std::uint32_t block = find_block(first, which);
+      if (block == kNoBlock) continue;
+      const std::uint32_t* entries = entries_.data() + (std::size_t{block} << block_size_);
+      for (wanted &= present_[block]; wanted != 0; wanted &= wanted - 1) {
+        found_.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
       }
-      for (axis = 1; axis < dim() && ++step[axis] == 3; ++axis) step[axis] = 0;
     }
     return found_;
   }
@@ -87,7 +83,12 @@ class NeighbourIndex {
  private:
   static constexpr std::size_t kMinSlots = 64;
   static constexpr std::uint32_t kNoBlock = 0xffffffff;
-  static constexpr std::uint32_t kUnknown = 0xfffffffe;
+
+  /// Up to three places on one axis of a block, as far as they move a bit in the block's mask.
+  struct Row {
+    std::uint8_t shift[3];
+    std::uint8_t count = 0;
+  };
 
   [[nodiscard]] Index dim() const { return D == Eigen::Dynamic ? d_ : D; }
   // Blocks of 64 cells for d = 2 and 3, of 16 to 64 above.
@@ -134,6 +135,7 @@ class NeighbourIndex {
       blocks_[slot] = static_cast<std::uint32_t>(count);
       coordinates_.insert(coordinates_.end(), block, block + dim());
       entries_.resize((count + 1) << block_size_, 0);
+      present_.push_back(0);
     }
     return blocks_[slot];
   }
@@ -152,10 +154,8 @@ class NeighbourIndex {
   int shift_[kMaxMarchDim] = {};
   std::vector<std::uint32_t> blocks_;      // open addressing by block coordinates
   std::vector<std::int32_t> coordinates_;  // d a block
-  std::vector<std::uint32_t> entries_;     // 2^block_size_ a block: cell + 1, 0 = none
-  using Known = std::conditional_t<D == Eigen::Dynamic, std::vector<std::uint32_t>,
-                                   std::array<std::uint32_t, std::size_t{1} << (D > 0 ? D : 0)>>;
-  Known known_{};  // blocks around the cell asked about
+  std::vector<std::uint32_t> entries_;     // 2^block_size_ a block: its cells
+  std::vector<std::uint64_t> present_;     // a block: which of them there are
   std::vector<Index> found_;
 };
 

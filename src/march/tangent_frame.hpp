@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "taut/core/types.hpp"
@@ -31,6 +32,9 @@ class TangentFrame {
       const double norm = v.norm();
       v(c) += std::copysign(norm, v(c));
       reflection_[c] = v;
+      // One reflection carries the normal n to -sign(n_1) e_1 and turns the frame's orientation round.
+      if constexpr (D == 3 && K == 1)
+        axis_ = std::copysign(1.0, normals[0]) * Eigen::Map<const SmallVector<D>>(normals, 3);
       scale_[c] = 1 / (norm * std::abs(v(c)));
     }
   }
@@ -50,6 +54,15 @@ class TangentFrame {
     return w;
   }
 
+  /// d - k = 2: the cross product a x b of the tangential parts of a and b, in tangent coordinates.
+  [[nodiscard]] double cross(const SmallVector<D>& a, const SmallVector<D>& b) const {
+    if constexpr (D == 3 && K == 1) return a.cross(b).dot(axis_);
+    const Index k = codim();
+    const SmallVector<D> s = coordinates(a);
+    const SmallVector<D> t = coordinates(b);
+    return s(k) * t(k + 1) - s(k + 1) * t(k);
+  }
+
  private:
   static constexpr int kMaxCodim = K == Eigen::Dynamic ? kMaxMarchDim : K;
 
@@ -59,6 +72,7 @@ class TangentFrame {
   Index k_;
   SmallVector<D> reflection_[kMaxCodim];
   double scale_[kMaxCodim];
+  SmallVector<D> axis_;  // d = 3, k = 1: +-n, such that the frame is right-handed about it
 };
 
 }  // namespace taut::detail
