@@ -4,8 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,6 +50,9 @@ ProgramResult interrupt(RunningProgram& program) {
   return result;
 }
 
+/// Great circles between the pairs below.
+const std::array<double, 4> kSphereLengths = {std::acos(0.0), std::acos(-0.48), std::acos(-0.6), std::acos(0.0)};
+
 /// `count` lines of the same few pairs of points of the unit sphere, over and over.
 std::string sphere_pairs(int count) {
   const char* const pairs[] = {"1,0,0,0,1,0", "0.6,0.8,0,0,-0.6,0.8", "0,0,1,0.8,0,-0.6", "-1,0,0,0,0.8,0.6"};
@@ -67,11 +75,57 @@ TEST(Interrupt, LeavesTheWholeLinesOfABatch) {
   EXPECT_EQ(result.out.back(), '\n') << result.out.substr(result.out.rfind('\n') + 1);
   const auto answered = static_cast<int>(std::count(result.out.begin(), result.out.end(), '\n'));
   EXPECT_LT(answered, kEndless);
-  // They are the answers of a run that nobody interrupts.
-  const std::string fewer = folder.write("fewer.csv", sphere_pairs(answered)).string();
-  const ProgramResult whole = run_taut({"path", sphere, "--pairs", fewer});
+  // They are right: all four pairs are a known part of a great circle apart.
+  std::istringstream lines(result.out);
+  for (int i = 0; i < answered; ++i) {
+    double length = 0;
+    std::string rest;
+    lines >> length;
+    std::getline(lines, rest);
+    ASSERT_NEAR(length, kSphereLengths[i % 4], 1e-9) << "line " << i + 1;
+    ASSERT_TRUE(rest.ends_with(",ok")) << rest;
+  }
+}
+
+TEST(Interrupt, AKilledBatchGoesOnWhereItWas) {
+  const TempFolder folder;
+  const std::string pairs = folder.write("pairs.csv", sphere_pairs(6000)).string();
+  const auto out = folder.path() / "lengths.csv";
+  const auto partial = folder.path() / "lengths.csv.partial";
+  const std::vector<std::string> command = {"path", "x^2+y^2+z^2=1", "--pairs", pairs, "--out", out.string()};
+  {
+    RunningProgram program(command);
+    // The first lines and part of the next.
+    ASSERT_TRUE(wait_until(program, [&] { return test::file_bytes(partial).size() > 5000; })) << program.err();
+    program.send(SIGKILL);
+    program.wait(kSoon);
+  }
+  ASSERT_FALSE(std::filesystem::exists(out));
+  const std::string kept = test::file_bytes(partial);
+  std::ofstream(partial, std::ios::app) << "1.2345,1e-";  // a line that was being written
+  const ProgramResult rest = run_taut(command);
+  EXPECT_EQ(rest.exit_code, 0) << rest.err;
+  EXPECT_NE(rest.err.find("going on after"), std::string::npos) << rest.err;
+  EXPECT_FALSE(std::filesystem::exists(partial));
+  const std::string resumed = test::file_bytes(out);
+  const std::string earlier = kept.substr(kept.find('\n') + 1);
+  EXPECT_TRUE(resumed.starts_with(earlier.substr(0, earlier.rfind('\n') + 1)));
+  // The same as in one go.
+  const ProgramResult whole = run_taut({"path", "x^2+y^2+z^2=1", "--pairs", pairs});
   EXPECT_EQ(whole.exit_code, 0) << whole.err;
-  EXPECT_EQ(result.out, whole.out);
+  EXPECT_EQ(resumed, whole.out);
+}
+
+TEST(Interrupt, AnotherRequestStartsAnew) {
+  const TempFolder folder;
+  const std::string pairs = folder.write("pairs.csv", sphere_pairs(40)).string();
+  const auto out = folder.path() / "lengths.csv";
+  folder.write("lengths.csv.partial", "# taut path something else\n0.5,0,1,1,ok\n");
+  const ProgramResult result = run_taut({"path", "x^2+y^2+z^2=1", "--pairs", pairs, "--out", out.string()});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const std::string lines = test::file_bytes(out);
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 40);
+  EXPECT_EQ(lines.find("0.5,0,1,1,ok"), std::string::npos);
 }
 
 TEST(Interrupt, ReachesTheMiddleOfALongStage) {
