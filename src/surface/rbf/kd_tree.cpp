@@ -28,7 +28,8 @@ bool closer(const Neighbour& a, const Neighbour& b) {
   return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.index < b.index;
 }
 
-// Result sets of our own: nanoflann's break ties by the order in which the tree is walked.
+// Result sets of our own: nanoflann's break ties by the order in which the tree is walked. Newer versions of it ask for
+// sort().
 struct NearestSet {
   using DistanceType = double;
   std::vector<Neighbour>& found;
@@ -48,6 +49,7 @@ struct NearestSet {
     found.insert(std::upper_bound(found.begin(), found.end(), candidate, closer), candidate);
     return true;
   }
+  void sort() {}
 };
 
 struct WithinSet {
@@ -62,6 +64,7 @@ struct WithinSet {
     if (squared_distance <= squared_radius) found.push_back({index, squared_distance});
     return true;
   }
+  void sort() { std::sort(found.begin(), found.end(), closer); }
 };
 
 }  // namespace
@@ -88,14 +91,14 @@ Neighbour KdTree::nearest(const double* x) const {
 void KdTree::nearest(const double* x, Index k, std::vector<Neighbour>& out) const {
   out.clear();
   NearestSet set{out, static_cast<std::size_t>(std::min<Index>(k, impl_->view.points.cols()))};
-  if (set.capacity > 0) impl_->tree.findNeighbors(set, x, nanoflann::SearchParams());
+  if (set.capacity > 0) impl_->tree.findNeighbors(set, x, {});
 }
 
 void KdTree::within(const double* x, double radius, std::vector<Neighbour>& out) const {
   out.clear();
   WithinSet set{out, radius * radius};
-  impl_->tree.findNeighbors(set, x, nanoflann::SearchParams());
-  std::sort(out.begin(), out.end(), closer);
+  impl_->tree.findNeighbors(set, x, {});
+  set.sort();
 }
 
 }  // namespace taut::detail
