@@ -20,7 +20,7 @@ constexpr Index kMostRivals = 16;
 constexpr Index kMostWaysRound = 64;
 
 // The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
-constexpr double kTableTurn = 0.8;   // most that the normal turns from one of its cells to the next, radians  // most
+constexpr double kTableTurn = 1.0;   // most that the normal turns from one of its cells to the next, radians  // most
                                      // that the normal turns from one of its cells to the next, radians
 constexpr double kRefinement = 1.4;  // the next finer size
 constexpr double kFewestCells = 400;

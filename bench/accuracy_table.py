@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+"""Time against accuracy for one pair of points: Taut, GeographicLib, and meshes of the same surface, in one run.
+
+    accuracy_table.py BUILD [--plot FILE.svg] [--pairs N]
+
+BUILD: a build folder of the preset `bench`. Prints a Markdown table: per surface and method the time to prepare (cells and
+table; mesh; factorization), the median time a pair, and the median relative error. Meshes are Taut's own, with vertices exactly on
+the surface, and their pairs are vertices, so that nothing but the mesh itself is to blame; their truth is `taut path --tol 1e-13`.
+Exact polyhedral distances are left out at 500,000 triangles, where one takes minutes.
+"""
+
+import argparse
+import csv
+import io
+import math
+import pathlib
+import statistics
+import subprocess
+import tempfile
+import time
+
+FORMULAS = {
+    "ellipsoid": ("x^2+y^2+4z^2=1", {"5k": 0.07, "50k": 0.0225, "500k": 0.0071}),
+    "torus": ("(x^2+y^2+z^2+1-0.16)^2=4*(x^2+y^2)", {"5k": 0.094, "50k": 0.03, "500k": 0.0094}),
+    "tanglecube": ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8=0", {"5k": 0.27, "50k": 0.09, "500k": 0.028}),
+}
+COLOURS = {"taut path": "#c0392b", "taut correction": "#e59866", "GeographicLib": "#2e86c1",
+           "polyhedral": "#27ae60", "heat": "#7d3c98"}
+
+
+def output(*command):
+    return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=True).stdout
+
+
+def mesh_rows(build, surface, pairs_file, count, folder):
+    """Rows of the opponents on meshes of three sizes."""
+    formula, cells = FORMULAS[surface]
+    rows = []
+    for size, cell in cells.items():
+        mesh = folder / f"{surface}_{size}.obj"
+        begin = time.monotonic()
+        output(build / "taut", "mesh", formula, "--cell", cell, "--out", mesh, "--quiet")
+        meshing = time.monotonic() - begin
+        triangles = sum(line.startswith("f ") for line in mesh.open())
+        lines = output(build / "bench/opponent_heat", mesh, pairs_file, count).splitlines()
+        fields = [[float(x) for x in line.split(",")] for line in lines[1:]]
+        fields = [f for f in fields if f[:3] != f[3:6]]
+        ends = folder / "ends.csv"
+        ends.write_text("".join(",".join(repr(x) for x in f[:6]) + "\n" for f in fields))
+        truth = [float(line.split(",")[0]) for line in
+                 output(build / "taut", "path", formula, "--pairs", ends, "--tol", "1e-13", "--quiet").splitlines()]
+        error = statistics.median(abs(f[6] / t - 1) for f, t in zip(fields, truth))
+        rows.append((surface, "heat", f"{triangles:,}", meshing + float(lines[0]),
+                     1e6 * statistics.median(f[7] for f in fields), error))
+        if size == "500k":
+            continue
+        exact = list(csv.DictReader(io.StringIO(output(build / "bench/opponent_polyhedral", mesh, ends))))
+        error = statistics.median(abs(float(e["length"]) / t - 1) for e, t in zip(exact, truth))
+        rows.append((surface, "polyhedral", f"{triangles:,}", meshing,
+                     1e6 * statistics.median(float(e["seconds"]) for e in exact), error))
+    return rows
+
+
+def plot(rows, file):
+    """Error against time, both logarithmic, a panel a surface."""
+    width, height, left, top = 300, 260, 60, 40
+    surfaces = list(FORMULAS)
+    x_of = lambda us: left + (math.log10(us) - 0) / 7 * (width - left - 20)
+    y_of = lambda e: top + (-math.log10(max(e, 1e-16))) / 16 * (height - top - 40)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width * len(surfaces)}" height="{height + 30}" '
+           'font-family="sans-serif" font-size="10">', '<rect width="100%" height="100%" fill="white"/>']
+    for panel, surface in enumerate(surfaces):
+        out.append(f'<g transform="translate({panel * width},0)"><text x="{left}" y="20" font-size="12">{surface}</text>')
+        for power in range(0, 8):
+            x = x_of(10**power)
+            out.append(f'<line x1="{x:.1f}" y1="{top}" x2="{x:.1f}" y2="{height - 40}" stroke="#eee"/>')
+            label = {0: "1 us", 3: "1 ms", 6: "1 s"}.get(power, "")
+            out.append(f'<text x="{x:.1f}" y="{height - 26}" text-anchor="middle">{label}</text>')
+        for power in range(0, 17, 4):
+            y = y_of(10.0**-power)
+            out.append(f'<line x1="{left}" y1="{y:.1f}" x2="{width - 20}" y2="{y:.1f}" stroke="#eee"/>')
+            out.append(f'<text x="{left - 6}" y="{y + 3:.1f}" text-anchor="end">1e-{power}</text>')
+        for name, colour in COLOURS.items():
+            points = [(x_of(us), y_of(error)) for s, method, _, _, us, error in rows if s == surface and method.startswith(name)]
+            if not points:
+                continue
+            path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+            out.append(f'<polyline points="{path}" fill="none" stroke="{colour}"/>')
+            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3.5" fill="{colour}"/>' for x, y in points]
+        out.append("</g>")
+    for i, (name, colour) in enumerate(COLOURS.items()):
+        x = left + i * 150
+        out.append(f'<circle cx="{x}" cy="{height + 8}" r="4" fill="{colour}"/><text x="{x + 10}" y="{height + 12}">{name}</text>')
+    out.append("</svg>")
+    file.write_text("\n".join(out) + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--plot", type=pathlib.Path)
+    parser.add_argument("--pairs", type=int, default=10, help="pairs for the opponents on meshes")
+    arguments = parser.parse_args()
+    rows = []
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        table = csv.DictReader(io.StringIO(output(arguments.build / "bench/bench_path", "--pairs", folder)))
+        for row in table:
+            rows.append((row["surface"], row["method"], row["setting"], float(row["prepare_s"]), float(row["us"]),
+                         float(row["median_error"])))
+        for surface in FORMULAS:
+            rows += mesh_rows(arguments.build, surface, folder / f"{surface}.csv", arguments.pairs, folder)
+    print("| surface | method | setting or triangles | to prepare, s | a pair, us | median error |\n|---|---|---|---|---|---|")
+    for surface, method, setting, prepare, us, error in sorted(rows, key=lambda r: list(FORMULAS).index(r[0])):
+        print(f"| {surface} | {method} | {setting} | {prepare:.2g} | {us:.3g} | {error:.1e} |")
+    if arguments.plot:
+        plot(rows, arguments.plot)
+
+
+if __name__ == "__main__":
+    main()
