@@ -1,4 +1,4 @@
-// taut path: one pair, one source to many destinations, or many pairs.
+// taut path: one pair, perhaps through points on the way, one source to many destinations, or many pairs.
 
 #include <fmt/format.h>
 
@@ -12,9 +12,11 @@
 
 #include "checks.hpp"
 #include "commands.hpp"
+#include "deliver_path.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
 #include "path_pairs.hpp"
+#include "path_via.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
@@ -30,6 +32,7 @@ struct PathArguments {
   SurfaceArguments surface;
   std::string from;
   std::string to;
+  std::vector<std::string> via;
   std::string to_file;
   std::string pairs;
   PathOptions options;
@@ -70,6 +73,10 @@ void add_verification(const Surface& surface, const PathResult& result, const Co
                              found.miss, std::abs(found.miss_along), found.amplification, to_string(found.status))});
 }
 
+PathDelivery delivery(const PathArguments& arguments) {
+  return {.json = arguments.json, .out = arguments.out, .title = arguments.surface.surface, .up = arguments.picture.up};
+}
+
 ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
                  const Timer& timer) {
   PathSolver solver(surface, arguments.options, context);
@@ -81,26 +88,27 @@ ExitCode run_one(const PathArguments& arguments, const Surface& surface, const C
   auto json = path_json(surface, result, arguments.options, surface_seconds, total);
   std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
   if (arguments.verify) add_verification(surface, result, context, json, facts);
-  if (arguments.json) {
-    std::cout << json.dump() << "\n";
-  } else {
-    std::cout << facts_text(facts);
+  return deliver_path(delivery(arguments), surface, result, json, facts, context);
+}
+
+/// Through points on the way.
+ExitCode run_via(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
+                 const Timer& timer) {
+  PathSolver solver(surface, arguments.options, context);
+  Points points(surface.dim(), static_cast<Index>(arguments.via.size()) + 2);
+  points.col(0) = parse_point(arguments.from, "--from", surface);
+  for (std::size_t i = 0; i < arguments.via.size(); ++i) {
+    points.col(static_cast<Index>(i) + 1) = parse_point(arguments.via[i], "--via", surface);
   }
-  if (result.points.cols() > 0) {
-    write_paths(arguments.out,
-                {.surface = surface,
-                 .paths = {&result},
-                 .json = json,
-                 .facts = facts,
-                 .title = arguments.surface.surface,
-                 .up = arguments.picture.up},
-                context);
-  } else {
-    print_error(result.message);
-    return exit_code(result.status);
-  }
-  if (result.status != Status::ok) print_error(fmt::format("{}: {}", to_string(result.status), result.message));
-  return exit_code(result.status);
+  points.rightCols(1) = parse_point(arguments.to, "--to", surface);
+  const ViaResult result = path_through(solver, points);
+  clear_progress();
+  const double total = timer.seconds();
+  auto json = path_json(surface, result, arguments.options, surface_seconds, total);
+  std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  add_legs(result, json);
+  add_legs(result, facts);
+  return deliver_path(delivery(arguments), surface, result, json, facts, context);
 }
 
 /// The points of a file, a line each; a bad line becomes a column of NaN, which its path then reports.
@@ -187,6 +195,11 @@ ExitCode run(const PathArguments& arguments) {
   if (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty())) {
     throw UsageError("give --from with --to, or --from with --to-file, or --pairs (see taut path --help)");
   }
+  const bool via = !arguments.via.empty();
+  if (via && !one) throw UsageError("--via stands between --from and --to");
+  if (via && (arguments.options.all || arguments.verify)) {
+    throw UsageError("--all and --verify are for a path without --via: ask for the legs one by one");
+  }
   if (arguments.verify && (!one || arguments.options.method != CorrectionMethod::newton)) {
     throw UsageError("--verify is for one path found by --method newton");
   }
@@ -198,6 +211,7 @@ ExitCode run(const PathArguments& arguments) {
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   const double surface_seconds = timer.seconds();
+  if (via) return run_via(arguments, surface, context, surface_seconds, timer);
   if (one) return run_one(arguments, surface, context, surface_seconds, timer);
   if (many) return run_many(arguments, surface, context, surface_seconds, timer);
   return run_pairs(arguments, surface, context);
@@ -211,6 +225,8 @@ Run add_path_command(CLI::App& app) {
   arguments->surface.add_to(command);
   command.add_option("--from", arguments->from, "start: 1,0,0, or @17 for the 17th sample from 0");
   command.add_option("--to", arguments->to, "end, likewise");
+  command.add_option("--via", arguments->via, "a point to pass on the way (repeatable, in order), likewise")
+      ->allow_extra_args(false);
   command.add_option("--to-file", arguments->to_file, "ends, one a line: every path shares the start's marched field");
   command.add_option("--pairs", arguments->pairs,
                      "pairs p1,...,pd,q1,...,qd, one a line; writes length,error,converged,locally_shortest,status");

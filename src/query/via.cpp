@@ -1,0 +1,95 @@
+#include "taut/query/via.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "curve/polyline.hpp"
+
+namespace taut {
+namespace {
+
+/// The less a leg can be used, the higher.
+int severity(Status status) {
+  if (status == Status::ok) return 0;
+  return status == Status::disconnected ? 2 : 1;
+}
+
+/// The legs' points in a row, without the joints' second copies.
+Points joined(const std::vector<PathResult>& legs) {
+  Index count = 0;
+  for (const PathResult& leg : legs) count += leg.points.cols();
+  Points all(legs.front().from.size(), count);
+  Index next = 0;
+  for (const PathResult& leg : legs) {
+    all.middleCols(next, leg.points.cols()) = leg.points;
+    next += leg.points.cols();
+  }
+  Points points = detail::without_repeats(all);
+  if (points.cols() == 1) points = points.replicate(1, 2).eval();  // all points the same: a path of that point
+  return points;
+}
+
+std::string leg_text(std::size_t leg, std::size_t num_legs, const std::string& problem) {
+  return fmt::format("leg {} of {}: {}", leg + 1, num_legs, problem);
+}
+
+}  // namespace
+
+ViaResult path_through(PathSolver& solver, const PointsIn& points) {
+  const Index dim = solver.surface().dim();
+  if (points.rows() != dim || points.cols() < 2) {
+    throw InvalidArgument(fmt::format("points ({} x {}) for a path through them: must be {} x n, n >= 2", points.rows(),
+                                      points.cols(), dim));
+  }
+  const auto num_legs = static_cast<std::size_t>(points.cols() - 1);
+  solver.expect(points, points.cols() - 1);
+  ViaResult whole;
+  for (std::size_t i = 0; i < num_legs; ++i) {
+    const auto j = static_cast<Index>(i);
+    try {
+      whole.legs.push_back(solver.solve(points.col(j), points.col(j + 1)));
+    } catch (const InvalidArgument& error) {
+      throw InvalidArgument(leg_text(i, num_legs, error.what()));
+    } catch (const SingularPoint& error) {
+      throw SingularPoint(leg_text(i, num_legs, error.what()));
+    }
+  }
+  whole.from = whole.legs.front().from;
+  whole.to = whole.legs.back().to;
+  whole.status = Status::ok;
+  whole.locally_shortest = true;
+  bool complete = true;
+  for (std::size_t i = 0; i < num_legs; ++i) {
+    const PathResult& leg = whole.legs[i];
+    if (severity(leg.status) > severity(whole.status)) {
+      whole.status = leg.status;
+      whole.message = leg_text(i, num_legs, leg.message);
+    }
+    complete = complete && leg.points.cols() > 0;
+    whole.length += leg.length;
+    whole.length_error += leg.length_error;
+    whole.locally_shortest = whole.locally_shortest && leg.locally_shortest;
+    whole.unique = whole.unique && leg.unique;
+    whole.residual.surface = std::max(whole.residual.surface, leg.residual.surface);
+    whole.residual.geodesic_curvature = std::max(whole.residual.geodesic_curvature, leg.residual.geodesic_curvature);
+    whole.num_iterations += leg.num_iterations;
+    whole.cell = std::max(whole.cell, leg.cell);
+    whole.num_cells = std::max(whole.num_cells, leg.num_cells);
+    whole.seconds.cells += leg.seconds.cells;
+    whole.seconds.march += leg.seconds.march;
+    whole.seconds.correct += leg.seconds.correct;
+  }
+  if (complete) {
+    whole.points = joined(whole.legs);
+  } else {
+    whole.length = 0;
+    whole.length_error = 0;
+    whole.locally_shortest = false;
+  }
+  return whole;
+}
+
+}  // namespace taut
