@@ -19,8 +19,12 @@ namespace taut {
 namespace {
 
 constexpr Index kGrain = 1024;
-// A projected centre stands for its cell while it stays in the 3^d block around it.
+// A projected centre stands for its cell while it stays in the 3^d block around it...
 constexpr double kReach = 1.5;
+// ... and, for one equation, while it is no farther away, on any axis, than that of a cell that a plane crosses: at most
+// max |n_i| (|n_1| + ... + |n_d|) / 2 = (1 + sqrt d) / 4 of a cell; curved surfaces need a little more. Interval bounds
+// keep many cells beside the surface that would only crowd the march.
+constexpr double kReachSlack = 0.1;
 // Of a cell: the centre's projection may stop here, far below what marching sees.
 constexpr double kTolerance = 1e-12;
 // Of a cell: how far outside the domain a point on its edge may lie by rounding.
@@ -39,6 +43,7 @@ class CentreProjector {
         evaluator_(surface.make_evaluator()),
         d_(surface.dim()),
         size_(size),
+        reach_(surface.codim() == 1 ? (1 + std::sqrt(static_cast<double>(d_))) / 4 + kReachSlack : kReach),
         options_{.tolerance = kTolerance * size, .max_steps = 30} {
     if (surface.domain() != nullptr) edge_.emplace(surface);
     options_.max_distance = 2 * kReach * size * std::sqrt(static_cast<double>(d_));
@@ -77,8 +82,9 @@ class CentreProjector {
     moved_ = starts;
     good_ = project_to_surface(*evaluator_, d_, surface_.codim(), moved_, options_, &normals_);
     if (edge_) pull_into_domain();
+    const double reach = edge_ ? kReach : reach_;
     for (Index j = 0; j < starts.cols(); ++j) {
-      if ((moved_.col(j) - starts.col(j)).lpNorm<Eigen::Infinity>() > kReach * size_) good_(j) = false;
+      if ((moved_.col(j) - starts.col(j)).lpNorm<Eigen::Infinity>() > reach * size_) good_(j) = false;
     }
   }
 
@@ -131,6 +137,7 @@ class CentreProjector {
   std::unique_ptr<Evaluator> evaluator_;
   Index d_;
   double size_;
+  double reach_;  // of a cell
   ProjectionOptions options_;
   std::optional<detail::DomainEdge> edge_;
   Eigen::MatrixXd centres_, moved_, normals_;
