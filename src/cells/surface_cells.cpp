@@ -21,9 +21,9 @@ namespace {
 constexpr Index kGrain = 1024;
 // A projected centre stands for its cell while it stays in the 3^d block around it...
 constexpr double kReach = 1.5;
-// ... and, for one equation, while it is no farther away, on any axis, than that of a cell that a plane crosses: at most
-// max |n_i| (|n_1| + ... + |n_d|) / 2 = (1 + sqrt d) / 4 of a cell; curved surfaces need a little more. Interval bounds
-// keep many cells beside the surface that would only crowd the march.
+// ... and, for one equation, while it is no farther away, on any axis, than that of a cell that a plane crosses: at
+// most max |n_i| (|n_1| + ... + |n_d|) / 2 = (1 + sqrt d) / 4 of a cell; curved surfaces need a little more. Interval
+// bounds keep many cells beside the surface that would only crowd the march.
 constexpr double kReachSlack = 0.1;
 // Of a cell: the centre's projection may stop here, far below what marching sees.
 constexpr double kTolerance = 1e-12;

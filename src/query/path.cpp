@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -66,6 +67,22 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
     };
   }
   return shared;
+}
+
+/// Why not even the finest cells have led from one end to the other, though they are connected.
+void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier) {
+  constexpr double kLeastCrease = 0.5;  // radians
+  const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
+  if (!crease) {
+    result.status = Status::disconnected;
+    result.message = fmt::format("no path was found on cells down to {:.3g}", result.cell);
+    return;
+  }
+  result.status = Status::not_converged;
+  result.message = fmt::format(
+      "the surface is not smooth between the two points: near {} its normal turns by {:.0f} degrees within a cell of "
+      "{:.2g}; geodesics over a crease or through a singular point are not supported",
+      detail::text_of(barrier->point), barrier->turn * 180 / std::numbers::pi, result.cell);
 }
 
 }  // namespace
@@ -135,6 +152,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
   std::optional<PathResult> best;
+  std::optional<Barrier> barrier;
   for (int level = 0; level < levels().num_levels(); ++level) {
     Starts starts;
     try {
@@ -144,6 +162,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
       break;
     }
     take(starts);
+    barrier = starts.barrier;
     if (starts.paths.empty() && !levels().exist()) {
       result.message = fmt::format(
           "no start path: in {} dimensions there are no cells to search, and a walk straight "
@@ -169,8 +188,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (sure || second_try || (p - q).norm() < result.cell) break;
   }
   if (!best) {
-    result.status = Status::disconnected;
-    result.message = fmt::format("no path was found on cells down to {:.3g}", result.cell);
+    explain_no_way(result, barrier);
     return result;
   }
   return *std::move(best);

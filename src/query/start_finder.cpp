@@ -161,6 +161,7 @@ Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const Dista
       if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
     }
   }
+  if (starts.paths.empty()) starts.barrier = find_barrier(*cells, from_p, q);
   starts.cells = std::move(cells);
   starts.seconds.march = watch.seconds();
   return starts;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "query/cell_levels.hpp"
+#include "taut/march/barrier.hpp"
 #include "taut/march/distance_field.hpp"
 #include "taut/march/distance_table.hpp"
 #include "taut/march/start_paths.hpp"
@@ -17,6 +18,7 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
+  std::optional<Barrier> barrier;       ///< where the march stopped short of the end, if it did
   PathSeconds seconds;
 };
 

@@ -41,8 +41,8 @@ class SurfaceCells {
   [[nodiscard]] Eigen::Map<const Eigen::MatrixXd> normals(Index i) const {
     return {normals_.data() + i * dim() * codim_, dim(), codim_};
   }
-  /// False where no surface point inside the domain was found as near to the centre of cell i as it is in cells that the
-  /// surface crosses (conservative tests keep cells that it does not reach): such cells are not walked.
+  /// False where no surface point inside the domain was found as near to the centre of cell i as it is in cells that
+  /// the surface crosses (conservative tests keep cells that it does not reach): such cells are not walked.
   [[nodiscard]] bool valid(Index i) const { return valid_[static_cast<std::size_t>(i)] != 0; }
 
   /// After it, every one of the 3^d - 1 neighbours of cell i that the surface may cross is present. May move memory:
