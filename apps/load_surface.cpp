@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "checks.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
 #include "taut/io/read_point_cloud.hpp"
+#include "taut/io/read_points.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut::app {
@@ -45,6 +47,19 @@ Surface load_file(const SurfaceArguments& arguments, const Context& context) {
   return make_surface(std::make_shared<const RbfModel>(fit_file(arguments.surface, arguments.rbf, context)));
 }
 
+/// The surface with points on it to start paths from, where there are no cells.
+Surface with_samples(const Surface& surface, const std::string& file, const Context& context) {
+  constexpr Index kMostDimensionsOfCells = 6;
+  if (surface.samples() != nullptr) throw UsageError("--samples is for formulas; a cloud brings its own");
+  if (surface.dim() <= kMostDimensionsOfCells) {
+    context.tell("--samples is not needed: in up to 6 dimensions cells find the way");
+    return surface;
+  }
+  PointCloud cloud;
+  cloud.points = read_points(file, surface.dim(), context);
+  return surface.with_samples(std::make_shared<const PointCloud>(std::move(cloud)));
+}
+
 }  // namespace
 
 void SurfaceArguments::add_to(CLI::App& command) {
@@ -58,6 +73,8 @@ void SurfaceArguments::add_to(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
       ->allow_extra_args(false);
+  command.add_option("--samples", samples,
+                     "points on or near a formula's surface, to start paths from in more than 6 dimensions");
   command.add_option("--box", box, "where to look: LO,HI or X0,X1,Y0,Y1,... (default: found)");
   add_fit_options(command, rbf);
 }
@@ -98,6 +115,7 @@ bool names_a_file(const std::string& surface) {
 Surface load_surface(const SurfaceArguments& arguments, const Context& context) {
   Surface surface = names_a_file(arguments.surface) ? load_file(arguments, context)
                                                     : parse_surface(arguments.surface, formula_options(arguments));
+  if (!arguments.samples.empty()) surface = with_samples(surface, arguments.samples, context);
   return arguments.box.empty() ? surface : surface.with_box(parse_box(arguments.box, surface.dim()));
 }
 

@@ -18,6 +18,7 @@ struct SurfaceArguments {
   std::vector<std::string> parameters;
   std::vector<std::string> domain;
   std::string box;
+  std::string samples;  // file
   RbfOptions rbf;
 
   void add_to(CLI::App& command);

@@ -164,9 +164,10 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     take(starts);
     barrier = starts.barrier;
     if (starts.paths.empty() && !levels().exist()) {
+      result.status = Status::disconnected;
       result.message = fmt::format(
-          "no start path: in {} dimensions there are no cells to search, and a walk straight "
-          "towards the end gets stuck",
+          "no path was found: the two points seem to lie on different components (random searches from both ends do not "
+          "meet; in {} dimensions there are no cells to prove it; --samples may help)",
           surface.dim());
       return result;
     }

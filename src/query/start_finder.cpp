@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "query/cell_size.hpp"
+#include "query/find_ways.hpp"
 #include "query/stopwatch.hpp"
-#include "query/walk_towards.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/march/descend.hpp"
@@ -116,12 +116,12 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   Stopwatch watch;
   if (!levels_.exist()) {
     Starts starts;
-    Points walk = walk_towards(surface_, p, q);
-    starts.seconds.march = watch.seconds();
-    if (walk.cols() >= 2) {
-      const double length = length_of(walk);
-      starts.paths.push_back({length, std::move(walk)});
+    for (Points& way : find_ways(surface_, p, q, context_)) {
+      const double length = length_of(way);
+      starts.paths.push_back({length, std::move(way)});
     }
+    std::ranges::sort(starts.paths, {}, &StartPath::length);
+    starts.seconds.march = watch.seconds();
     return starts;
   }
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));

@@ -37,6 +37,12 @@ Surface Surface::with_box(Box box) const {
   return Surface(function_, std::move(extras));
 }
 
+Surface Surface::with_samples(std::shared_ptr<const PointCloud> samples) const {
+  SurfaceExtras extras = extras_;
+  extras.samples = std::move(samples);
+  return Surface(function_, std::move(extras));
+}
+
 Points Surface::value(const PointsIn& x) const {
   require_dim("the point", x.rows(), dim());
   Points result(codim(), x.cols());

@@ -17,7 +17,8 @@ struct SurfaceExtras {
   std::shared_ptr<const ImplicitFunction> domain;
   /// Where to look for it. Unset = found automatically.
   std::optional<Box> box;
-  /// The samples it was fitted to: seeds for growing cells, and what `@17` means on the command line.
+  /// Points on or near it, such as those it was fitted to: seeds for growing cells, where paths start from in many
+  /// dimensions, and what `@17` means on the command line.
   std::shared_ptr<const PointCloud> samples;
 };
 
@@ -38,11 +39,13 @@ class Surface {
   /// Null when the surface is not cut.
   [[nodiscard]] const ImplicitFunction* domain() const { return extras_.domain.get(); }
   [[nodiscard]] const std::optional<Box>& box() const { return extras_.box; }
-  /// Null when the surface was not fitted to samples.
+  /// Null when there are none.
   [[nodiscard]] const PointCloud* samples() const { return extras_.samples.get(); }
 
   /// The same surface, looked for in `box`.
   [[nodiscard]] Surface with_box(Box box) const;
+  /// The same surface with points on or near it, where the search for a path may start.
+  [[nodiscard]] Surface with_samples(std::shared_ptr<const PointCloud> samples) const;
 
   // One-shot evaluation, for tests and small jobs; kernels use an Evaluator.
   [[nodiscard]] Points value(const PointsIn& x) const;     ///< k x n

@@ -1,0 +1,118 @@
+// Paths where there are too many dimensions for cells.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "taut/query/path.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace taut {
+namespace {
+
+using std::numbers::pi;
+using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+
+/// M^T M = I in R^9, row-major.
+Surface orthogonal_matrices() {
+  return parse_surface(
+      "x1*x1+x4*x4+x7*x7=1; x1*x2+x4*x5+x7*x8; x1*x3+x4*x6+x7*x9; x2*x2+x5*x5+x8*x8=1; x2*x3+x5*x6+x8*x9;"
+      "x3*x3+x6*x6+x9*x9=1");
+}
+Matrix rotation(const Vector& axis, double angle) {
+  const Eigen::Vector3d a = axis.normalized();
+  Matrix cross;
+  cross << 0, -a(2), a(1), a(2), 0, -a(0), -a(1), a(0), 0;
+  return Matrix::Identity() + std::sin(angle) * cross + (1 - std::cos(angle)) * cross * cross;
+}
+Vector coordinates(const Matrix& m) { return Eigen::Map<const Vector>(m.data(), 9); }
+
+/// A chain of five links of length 1 from the origin whose end stays 3 away from it: R^15, 6 equations.
+Surface chain() {
+  std::string text;
+  for (int link = 0; link < 5; ++link) {
+    for (int c = 1; c <= 3; ++c) {
+      text += "+(x" + std::to_string(3 * link + c);
+      if (link > 0) text += "-x" + std::to_string(3 * link + c - 3);
+      text += ")^2";
+    }
+    text += "=1;";
+  }
+  return parse_surface(text + "x13^2+x14^2+x15^2=9");
+}
+
+TEST(ManyDimensions, RotationsUpToTheCutLocusHaveTheBiInvariantDistance) {
+  PathSolver solver(orthogonal_matrices());
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (const double angle : {0.2, 1.7, 3.0, pi - 1e-2, pi - 1e-3, pi - 1e-5}) {
+    const Matrix from =
+        rotation(Eigen::Vector3d(uniform(random), uniform(random), uniform(random)), 2 * uniform(random));
+    const Matrix to = from * rotation(Eigen::Vector3d(uniform(random), uniform(random), 1), angle);
+    const PathResult path = solver.solve(coordinates(from), coordinates(to));
+    ASSERT_EQ(path.status, Status::ok) << path.message << " at " << angle;
+    EXPECT_NEAR(path.length, std::sqrt(2.0) * angle, 1e-9) << angle;
+    EXPECT_EQ(path.points.col(0), path.from);
+    EXPECT_EQ(path.points.rightCols<1>(), path.to);
+  }
+}
+
+TEST(ManyDimensions, ReflectionsAreNotReachedFromRotations) {
+  Matrix mirror = Matrix::Identity();
+  mirror(2, 2) = -1;
+  const PathResult path = shortest_path(orthogonal_matrices(), coordinates(Matrix::Identity()), coordinates(mirror));
+  EXPECT_EQ(path.status, Status::disconnected);
+  EXPECT_NE(path.message.find("seem to lie on different components"), std::string::npos) << path.message;
+}
+
+TEST(ManyDimensions, TwoCloseSheetsAreNotJoined) {
+  std::string squares;
+  for (int i = 1; i <= 8; ++i) squares += "+x" + std::to_string(i) + "^2";
+  const Surface shells = parse_surface("(" + squares + "-1)*(" + squares + "-1.0201)");
+  const Vector inner = Vector::Unit(8, 0);
+  EXPECT_EQ(shortest_path(shells, inner, -1.01 * inner).status, Status::disconnected);
+  EXPECT_EQ(shortest_path(shells, inner, 1.01 * inner).status, Status::disconnected);
+  EXPECT_EQ(shortest_path(shells, inner, Vector(Vector::Unit(8, 3))).status, Status::ok);
+}
+
+TEST(ManyDimensions, AntipodesOfASphere) {
+  std::string squares;
+  for (int i = 1; i <= 40; ++i) squares += "+x" + std::to_string(i) + "^2";
+  const PathResult path = shortest_path(parse_surface(squares + "=1"), Vector::Unit(40, 2), -Vector::Unit(40, 2));
+  EXPECT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi, 1e-9);
+}
+
+TEST(ManyDimensions, AKinematicChainTurnsRound) {
+  const Vector start{{1, 0, 0, 2, 0, 0, 2, -1, 0, 3, -1, 0, 3, 0, 0}};
+  const PathResult path = shortest_path(chain(), start, -start);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_LE(path.length_error, 1e-9 * path.length);
+  EXPECT_GT(path.length, 2 * start.norm());
+}
+
+TEST(ManyDimensions, SamplesShowTheWay) {
+  // A circle in R^7. The end lies straight behind it, so that a walk towards it does not even begin.
+  const Surface circle = parse_surface("x1^2+x2^2=1; x3; x4; x5; x6; x7");
+  auto cloud = std::make_shared<PointCloud>();
+  cloud->points = Points::Zero(7, 30);
+  for (Index i = 0; i < 30; ++i) {
+    cloud->points(0, i) = std::cos(0.5 + 0.2 * static_cast<double>(i));
+    cloud->points(1, i) = std::sin(0.5 + 0.2 * static_cast<double>(i));
+  }
+  Vector p = Vector::Zero(7);
+  Vector q = Vector::Zero(7);
+  p(0) = 1;
+  q(0) = -1;  // straight behind
+  const PathResult path = shortest_path(circle.with_samples(cloud), p, q);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi, 1e-9);
+}
+
+}  // namespace
+}  // namespace taut
