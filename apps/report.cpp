@@ -145,17 +145,21 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
   facts.push_back({"space", fmt::format("{} dimensions, {} equation{}: a surface of dimension {}", summary.dim,
                                         summary.codim, summary.codim == 1 ? "" : "s", summary.dim - summary.codim)});
   if (summary.dim <= 6) facts.push_back({"box", corner(summary.box.lower) + " to " + corner(summary.box.upper)});
-  facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(summary.num_cells), summary.cell)});
-  std::string components = std::to_string(summary.components.size());
-  if (summary.components.size() > 1) {
-    constexpr std::size_t kShown = 6;
-    const std::size_t shown = std::min(kShown, summary.components.size());
-    components += fmt::format(
-        ", of {} cells{}",
-        fmt::join(summary.components.begin(), summary.components.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
-        shown < summary.components.size() ? ", ..." : "");
+  if (summary.num_cells > 0) {
+    facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(summary.num_cells), summary.cell)});
+    std::string components = std::to_string(summary.components.size());
+    if (summary.components.size() > 1) {
+      constexpr std::size_t kShown = 6;
+      const std::size_t shown = std::min(kShown, summary.components.size());
+      components += fmt::format(
+          ", of {} cells{}",
+          fmt::join(summary.components.begin(), summary.components.begin() + static_cast<std::ptrdiff_t>(shown), ", "),
+          shown < summary.components.size() ? ", ..." : "");
+    }
+    facts.push_back({"components", components});
+  } else {
+    facts.push_back({"cells", "none: there would be too many in more than 6 dimensions"});
   }
-  facts.push_back({"components", components});
   if (summary.num_samples > 0) {
     facts.push_back({"samples", grouped(summary.num_samples)});
     facts.push_back({"residual", fmt::format("samples lie {:.2e} (rms), {:.2e} (most) off the surface",

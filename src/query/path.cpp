@@ -166,7 +166,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (starts.paths.empty() && !levels().exist()) {
       result.status = Status::disconnected;
       result.message = fmt::format(
-          "no path was found: the two points seem to lie on different components (random searches from both ends do not "
+          "no path was found: the two points seem to lie on different components (random searches from both ends do "
+          "not "
           "meet; in {} dimensions there are no cells to prove it; --samples may help)",
           surface.dim());
       return result;
@@ -215,6 +216,7 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
         } catch (const Error& error) {
           result = PathResult{};
           result.message = error.what();
+          if (dynamic_cast<const SingularPoint*>(&error) != nullptr) result.status = Status::rank_deficient;
         }
       }
       const Index so_far = done += last - first;

@@ -7,6 +7,8 @@
 
 #include "query/cell_levels.hpp"
 #include "taut/cells/components.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/diagnose.hpp"
 
 namespace taut {
 namespace {
@@ -27,26 +29,44 @@ Vector first_order_distances(const Surface& surface, const PointsIn& x) {
   return distance;
 }
 
+/// Why there is nothing to be seen, where the equations are the reason.
+void throw_if_rank_deficient(const Surface& surface, const detail::CellLevels& levels) {
+  constexpr double kReach = 2;  // without a box: where most formulas have their surface
+  Box box = levels.box();
+  if (box.dim() != surface.dim()) {
+    box = surface.box() ? *surface.box()
+                        : Box{Vector::Constant(surface.dim(), -kReach), Vector::Constant(surface.dim(), kReach)};
+  }
+  if (const auto diagnosis = diagnose_rank(surface.function(), box)) throw SingularPoint(diagnosis->text());
+}
+
 }  // namespace
 
 SurfaceSummary summarise(const Surface& surface, double cell, const Context& context) {
   detail::CellLevels levels(surface, GridMethod::automatic, cell, context);
-  const Points nowhere(surface.dim(), 0);
-  levels.prepare(nowhere);
-  const std::shared_ptr<SurfaceCells> shared = levels.cells(0, nowhere);
-  const SurfaceCells& cells = *shared;
-
   SurfaceSummary summary;
   summary.kind = surface.kind();
   summary.dim = surface.dim();
   summary.codim = surface.codim();
-  summary.box = levels.box();
-  summary.cell = cells.grid().size();
-  summary.num_cells = cells.num_cells();
-  const Components found = components(cells.grid());
-  summary.components.assign(static_cast<std::size_t>(found.count), 0);
-  for (const std::int32_t label : found.label) ++summary.components[static_cast<std::size_t>(label)];
-  std::ranges::sort(summary.components, std::greater<>());
+  if (levels.exist()) {
+    try {
+      const Points nowhere(surface.dim(), 0);
+      levels.prepare(nowhere);
+      const std::shared_ptr<SurfaceCells> cells = levels.cells(0, nowhere);
+      summary.box = levels.box();
+      summary.cell = cells->grid().size();
+      summary.num_cells = cells->num_cells();
+      const Components found = components(cells->grid());
+      summary.components.assign(static_cast<std::size_t>(found.count), 0);
+      for (const std::int32_t label : found.label) ++summary.components[static_cast<std::size_t>(label)];
+      std::ranges::sort(summary.components, std::greater<>());
+    } catch (const EmptySurface&) {
+      throw_if_rank_deficient(surface, levels);
+      throw;
+    }
+  } else {
+    throw_if_rank_deficient(surface, levels);
+  }
   if (const PointCloud* samples = surface.samples(); samples != nullptr && samples->size() > 0) {
     const Vector distance = first_order_distances(surface, samples->points);
     summary.num_samples = samples->size();

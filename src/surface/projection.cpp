@@ -8,6 +8,7 @@
 #include "surface/describe.hpp"
 #include "surface/normal_space.hpp"
 #include "taut/core/error.hpp"
+#include "taut/surface/diagnose.hpp"
 
 // Notation. x: the point so far; s = -J^+ F(x): its Newton step; t: the fraction of s on trial; x_t = x + t s.
 //   r = |s|            residual, a length
@@ -270,26 +271,12 @@ void project(Evaluator& evaluator, Index dim, Index codim, const ProjectionOptio
 }
 
 [[noreturn]] void throw_singular(const Surface& surface, const VectorIn& x, const VectorIn& start) {
-  const Vector value = surface.value(x);
-  const Eigen::MatrixXd gradients = surface.jacobian(x).reshaped(surface.dim(), surface.codim());
-  Eigen::MatrixXd q(surface.dim(), surface.codim());
-  Eigen::MatrixXd r(surface.codim(), surface.codim());
-  const Index bad =
-      NormalSpace<Eigen::Dynamic>::factor(surface.dim(), surface.codim(), gradients.data(), q.data(), r.data());
-  std::string message = "the surface has no normal at " + describe(x);
-  if (surface.codim() == 1) {
-    message += " (|grad F| = " + describe(gradients.norm()) + ", F = " + describe(value(0)) + ")";
-  } else if (bad < surface.codim()) {
-    message += ": there the gradient of equation " + std::to_string(bad + 1) +
-               (bad == 0 || gradients.col(bad).norm() == 0 || !gradients.col(bad).allFinite()
-                    ? " vanishes or is undefined"
-                    : " depends on those of the equations before it");
-  }
-  if ((x - start).norm() > 0) message += ", where the projection of " + describe(start) + " runs into";
-  message +=
-      ": a cone's apex, a node, or an equation written as a square or as the root of a sum of squares; "
-      "take another point, or write the squared parts as equations of their own";
-  throw SingularPoint(message);
+  std::string from;
+  if ((x - start).norm() > 0) from = " (where the projection of " + describe(start) + " runs into)";
+  if (const auto diagnosis = diagnose_rank(surface.function(), x)) throw SingularPoint(diagnosis->text() + from);
+  throw SingularPoint("rank deficient: the surface has no normal at " + describe(x) + from +
+                      ": an apex, a node, or an equation written as a square or as the root of a sum of squares; "
+                      "take another point, or write the squared parts as equations of their own");
 }
 
 void require_options(const ProjectionOptions& options) {

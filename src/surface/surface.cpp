@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "taut/core/error.hpp"
+#include "taut/surface/diagnose.hpp"
 
 namespace taut {
 namespace {
@@ -23,8 +24,13 @@ Surface::Surface(std::shared_ptr<const ImplicitFunction> function, SurfaceExtras
   const Index k = codim();
   if (d < 2) throw InvalidArgument("a surface needs at least 2 dimensions, not " + std::to_string(d));
   if (k < 1 || k >= d) {
-    throw InvalidArgument(std::to_string(k) + " equations in " + std::to_string(d) +
-                          " dimensions leave no curve to walk on: at most " + std::to_string(d - 1) + " are possible");
+    std::string message = std::to_string(k) + " equations in " + std::to_string(d) +
+                          " dimensions leave no curve to walk on: at most " + std::to_string(d - 1) + " are possible";
+    if (k >= d) {
+      const auto diagnosis = diagnose_rank(*function_, Box{Vector::Constant(d, -1), Vector::Constant(d, 1)});
+      if (diagnosis) message += "; " + diagnosis->text();
+    }
+    throw InvalidArgument(message);
   }
   if (extras_.domain) require_dim("the domain", extras_.domain->dim(), d);
   if (extras_.box) require_dim("the box", extras_.box->dim(), d);

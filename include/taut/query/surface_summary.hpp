@@ -14,6 +14,7 @@ struct SurfaceSummary {
   std::string kind;  ///< "formula", "rbf", "callback"
   Index dim = 0;
   Index codim = 0;
+  // In more than 6 dimensions there are no cells: then these stay empty.
   Box box;          ///< the cells' box: where the surface was found
   double cell = 0;  ///< h, model units
   Index num_cells = 0;
@@ -23,7 +24,8 @@ struct SurfaceSummary {
   double sample_max = 0;
 };
 
-/// Looks at the surface on cells of size `cell` (0 = chosen). Throws EmptySurface, OutOfMemory, Cancelled.
+/// Looks at the surface on cells of size `cell` (0 = chosen). Throws EmptySurface, OutOfMemory,
+/// Cancelled; SingularPoint, naming the equations, where they depend on each other all over the surface.
 [[nodiscard]] SurfaceSummary summarise(const Surface& surface, double cell = 0, const Context& context = {});
 
 }  // namespace taut
