@@ -1,6 +1,7 @@
 #include "taut/query/path.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <atomic>
 #include <cmath>
@@ -80,9 +81,10 @@ void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier) {
   }
   result.status = Status::not_converged;
   result.message = fmt::format(
-      "the surface is not smooth between the two points: near {} its normal turns by {:.0f} degrees within a cell of "
+      "the surface is not smooth between the two points: near ({:.4g}) its normal turns by {:.0f} degrees within a "
+      "cell of "
       "{:.2g}; geodesics over a crease or through a singular point are not supported",
-      detail::text_of(barrier->point), barrier->turn * 180 / std::numbers::pi, result.cell);
+      fmt::join(barrier->point, ", "), barrier->turn * 180 / std::numbers::pi, result.cell);
 }
 
 }  // namespace
@@ -167,8 +169,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
       result.status = Status::disconnected;
       result.message = fmt::format(
           "no path was found: the two points seem to lie on different components (random searches from both ends do "
-          "not "
-          "meet; in {} dimensions there are no cells to prove it; --samples may help)",
+          "not meet; in {} dimensions there are no cells to prove it; --samples may help)",
           surface.dim());
       return result;
     }
