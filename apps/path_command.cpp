@@ -1,4 +1,5 @@
-// taut path: one pair, perhaps through points on the way, one source to many destinations, or many pairs.
+// taut path: one pair, perhaps through points on the way, one source to many destinations, many pairs, or in the
+// class of a polyline.
 
 #include <fmt/format.h>
 
@@ -15,6 +16,7 @@
 #include "deliver_path.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
+#include "path_class.hpp"
 #include "path_pairs.hpp"
 #include "path_via.hpp"
 #include "points_argument.hpp"
@@ -35,6 +37,8 @@ struct PathArguments {
   std::vector<std::string> via;
   std::string to_file;
   std::string pairs;
+  std::string start;
+  std::string closed;
   PathOptions options;
   PictureArguments picture;
   std::vector<std::string> out;
@@ -109,6 +113,35 @@ ExitCode run_via(const PathArguments& arguments, const Surface& surface, const C
   add_legs(result, json);
   add_legs(result, facts);
   return deliver_path(delivery(arguments), surface, result, json, facts, context);
+}
+
+/// In the class of a polyline, or of a loop.
+ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, const Context& context,
+                      double surface_seconds, const Timer& timer) {
+  nlohmann::ordered_json json;
+  std::vector<SceneFact> facts;
+  const auto deliver = [&](const PathResult& result) {
+    if (arguments.verify) add_verification(surface, result, context, json, facts);
+    return deliver_path(delivery(arguments), surface, result, json, facts, context);
+  };
+  const auto describe = [&](const PathResult& result) {
+    clear_progress();
+    const double total = timer.seconds();
+    json = path_json(surface, result, arguments.options, surface_seconds, total);
+    json["unique"] = nullptr;
+    facts = path_facts(result, arguments.options, surface_seconds, total);
+  };
+  if (!arguments.closed.empty()) {
+    const ClosedGeodesic loop = close_polyline(arguments.closed, surface, arguments.options, context);
+    describe(loop);
+    add_closed(loop, json);
+    add_closed(loop, facts);
+    return deliver(loop);
+  }
+  const PolylineRequest request{.file = arguments.start, .from = arguments.from, .to = arguments.to};
+  const PathResult path = shorten_polyline(request, surface, arguments.options, context);
+  describe(path);
+  return deliver(path);
 }
 
 /// The points of a file, a line each; a bad line becomes a column of NaN, which its path then reports.
@@ -188,19 +221,37 @@ ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const
   return answer_pairs(request, surface, context);
 }
 
+void check_class_usage(const PathArguments& arguments) {
+  const char* option = arguments.closed.empty() ? "--start" : "--closed";
+  if (!arguments.start.empty() && !arguments.closed.empty()) throw UsageError("give --start or --closed, not both");
+  if (!arguments.via.empty() || !arguments.to_file.empty() || !arguments.pairs.empty() || arguments.options.all) {
+    throw UsageError(fmt::format("{} goes without --via, --to-file, --pairs and --all", option));
+  }
+  if (!arguments.closed.empty() && (!arguments.from.empty() || !arguments.to.empty())) {
+    throw UsageError("--closed has no ends: leave --from and --to out");
+  }
+  if (arguments.options.method == CorrectionMethod::grid ||
+      (!arguments.closed.empty() && arguments.options.method != CorrectionMethod::newton)) {
+    throw UsageError(fmt::format("{} goes with --method newton{}", option, arguments.closed.empty() ? " or flow" : ""));
+  }
+}
+
 ExitCode run(const PathArguments& arguments) {
   const bool one = !arguments.from.empty() && !arguments.to.empty();
   const bool many = !arguments.from.empty() && !arguments.to_file.empty();
   const bool pairs = !arguments.pairs.empty();
-  if (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty())) {
-    throw UsageError("give --from with --to, or --from with --to-file, or --pairs (see taut path --help)");
+  const bool in_class = !arguments.start.empty() || !arguments.closed.empty();
+  if (in_class) check_class_usage(arguments);
+  if (!in_class && (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty()))) {
+    throw UsageError(
+        "give --from with --to, or --from with --to-file, or --pairs, --start or --closed (see taut path --help)");
   }
   const bool via = !arguments.via.empty();
   if (via && !one) throw UsageError("--via stands between --from and --to");
   if (via && (arguments.options.all || arguments.verify)) {
     throw UsageError("--all and --verify are for a path without --via: ask for the legs one by one");
   }
-  if (arguments.verify && (!one || arguments.options.method != CorrectionMethod::newton)) {
+  if (arguments.verify && ((!one && !in_class) || arguments.options.method != CorrectionMethod::newton)) {
     throw UsageError("--verify is for one path found by --method newton");
   }
   check_outputs(arguments.out, OutputKind::path);
@@ -211,6 +262,7 @@ ExitCode run(const PathArguments& arguments) {
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   const double surface_seconds = timer.seconds();
+  if (in_class) return run_in_class(arguments, surface, context, surface_seconds, timer);
   if (via) return run_via(arguments, surface, context, surface_seconds, timer);
   if (one) return run_one(arguments, surface, context, surface_seconds, timer);
   if (many) return run_many(arguments, surface, context, surface_seconds, timer);
@@ -230,6 +282,10 @@ Run add_path_command(CLI::App& app) {
   command.add_option("--to-file", arguments->to_file, "ends, one a line: every path shares the start's marched field");
   command.add_option("--pairs", arguments->pairs,
                      "pairs p1,...,pd,q1,...,qd, one a line; writes length,error,converged,locally_shortest,status");
+  command.add_option("--start", arguments->start,
+                     "a polyline, one point a line: the geodesic it is pulled taut to, in its homotopy class");
+  command.add_option("--closed", arguments->closed,
+                     "a loop, one point a line: the closed geodesic in its class, or the point it shrinks to");
   PathOptions& options = arguments->options;
   command.add_option("--tol", options.tolerance, "relative length tolerance")
       ->check(number_between(1e-13, 1e-3))

@@ -14,24 +14,13 @@
 
 #include "core/parallel.hpp"
 #include "query/cell_levels.hpp"
+#include "query/check_options.hpp"
 #include "query/corrector.hpp"
 #include "query/start_finder.hpp"
 #include "query/stopwatch.hpp"
 
 namespace taut {
 namespace {
-
-void check_options(const PathOptions& options) {
-  if (!(options.tolerance >= 1e-13) || !(options.tolerance <= 1e-3)) {
-    throw InvalidArgument(fmt::format("tolerance {}: must be from 1e-13 to 1e-3", options.tolerance));
-  }
-  if (!(options.spacing >= 0) || !std::isfinite(options.spacing)) {
-    throw InvalidArgument(fmt::format("node spacing {}: must be positive, or 0 to have it chosen", options.spacing));
-  }
-  if (!(options.beta > 0) || !std::isfinite(options.beta)) {
-    throw InvalidArgument(fmt::format("beta {}: must be positive", options.beta));
-  }
-}
 
 Points chord(const VectorIn& p, const VectorIn& q) {
   Points x(p.size(), 2);
@@ -117,7 +106,7 @@ struct PathSolver::Impl {
 };
 
 PathSolver::PathSolver(Surface surface, PathOptions options, Context context) {
-  check_options(options);
+  detail::check_options(options);
   impl_ = std::make_unique<Impl>(std::move(surface), options, context);
 }
 PathSolver::~PathSolver() = default;

@@ -1,0 +1,108 @@
+#include "taut/query/class_path.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "query/check_options.hpp"
+#include "query/class_setting.hpp"
+#include "query/geodesic_polygon.hpp"
+#include "query/stopwatch.hpp"
+#include "taut/curve/flow.hpp"
+#include "taut/curve/newton.hpp"
+
+namespace taut {
+namespace {
+
+using detail::Shortening;
+
+/// The polyline itself, with nothing known about its error.
+Geodesic uncorrected(const Shortening& shortening) {
+  Geodesic geodesic;
+  geodesic.points = shortening.strand().polyline();
+  geodesic.length = shortening.strand().length();
+  geodesic.length_error = std::numeric_limits<double>::infinity();
+  geodesic.reason = "the corrected curve left the class of the polyline (smaller cells may help)";
+  return geodesic;
+}
+
+}  // namespace
+
+PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const PathOptions& options,
+                         const Context& context) {
+  detail::check_options(options);
+  detail::Stopwatch watch;
+  const detail::StrandMaker maker(surface);
+  detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, false, options, context);
+  PathResult result;
+  result.from = setting.strand.points.col(0);
+  result.to = setting.strand.points.rightCols(1);
+  result.cell = setting.cell;
+  result.seconds.cells = watch.restart();
+  Shortening shortening(maker, std::move(setting.strand), setting.gap);
+  detail::GeodesicPolygon polygon(surface, maker, options.tolerance, setting.gap);
+  std::optional<NewtonSolver> newton;
+  const auto correct = [&](const Points& start) -> Geodesic {
+    if (options.method == CorrectionMethod::flow) {
+      return correct_flow(surface, start, {.spacing = options.spacing, .cell = setting.cell, .beta = options.beta},
+                          context);
+    }
+    if (!newton) newton.emplace(surface, NewtonOptions{.tolerance = options.tolerance});
+    return newton->solve(start, context);
+  };
+  bool followed = false;
+  bool is_point = false;
+  Geodesic geodesic;
+  int round = 0;
+  for (const double settled : detail::kSettled) {
+    const Shortening::Outcome outcome = shortening.run(settled * setting.gap, context);
+    is_point = outcome == Shortening::Outcome::a_point;
+    result.grid_path = shortening.strand().polyline();
+    result.num_iterations = shortening.num_steps();
+    if (is_point) break;
+    geodesic = correct(result.grid_path);
+    followed = shortening.is_followed_by(geodesic.points);
+    if (!followed) {
+      // Too far for one jump: Newton's method on a polygon of arcs, in steps that keep the class.
+      const bool smooth = polygon.solve(shortening.strand(), context) == detail::GeodesicPolygon::Outcome::smooth;
+      if (smooth && polygon.index() == 0) {
+        result.grid_path = polygon.points();
+        geodesic = correct(result.grid_path);
+        followed = maker.is_near(result.grid_path, geodesic.points, 2 * setting.gap);
+        if (!followed && options.method == CorrectionMethod::newton) {
+          // A direction in which the length hardly changes: the polygon is as good as it gets, and knows its error.
+          geodesic = polygon.geodesic(options.tolerance);
+          geodesic.locally_shortest = polygon.neutral() == 0;
+          followed = true;
+        }
+      }
+    }
+    const bool comes_undone = shortening.returns() && geodesic.length < setting.gap;
+    if (followed && !comes_undone) break;
+    // Slid off a saddle perhaps: then so shall the strand.
+    if (options.method == CorrectionMethod::newton && ++round > 1) shortening.disturb(round);
+  }
+  if (is_point) {
+    geodesic = {};
+    geodesic.status = Status::ok;
+    geodesic.locally_shortest = true;
+    geodesic.points.resize(surface.dim(), 2);
+    geodesic.points << result.from, result.to;
+    geodesic.length = (result.to - result.from).norm();
+  } else if (!followed) {
+    geodesic = uncorrected(shortening);
+  }
+  geodesic.num_iterations += result.num_iterations;
+  static_cast<Geodesic&>(result) = std::move(geodesic);
+  result.message =
+      is_point ? "the polyline comes undone: its ends are one point, and so is the path" : std::string(result.reason);
+  if (result.status == Status::ok) {
+    result.candidates.push_back({result.length, result.length_error, result.locally_shortest, result.points});
+  }
+  result.seconds.correct = watch.seconds();
+  return result;
+}
+
+}  // namespace taut
