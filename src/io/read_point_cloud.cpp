@@ -40,7 +40,7 @@ std::string known_extensions() {
 }
 
 /// Throws IoError for an extension nobody reads.
-const Format& format_of(const std::filesystem::path& path) {
+Format format_of(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
   const auto* format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.extension == extension; });
@@ -76,7 +76,7 @@ void check_cloud(const InputFile& file, PointCloud& cloud) {
 }  // namespace
 
 PointCloud parse_point_cloud(InputFile file) {
-  const Format& format = format_of(file.path);
+  const Format format = format_of(file.path);
   const std::string_view kind = recognise(file.bytes);
   if (!kind.empty() && kind != format.kind) {
     file.fail("the content is " + std::string(kind) + ", not what " + std::string(format.extension) +
