@@ -3,10 +3,14 @@
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <memory>
+#include <random>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "taut/surface/formula.hpp"
 
@@ -18,7 +22,7 @@ using taut::Points;
 // Each writes F, its gradient (3) and its Hessian (9); null outputs are skipped.
 
 struct Sphere {
-  static constexpr const char* kFormula = "x^2+y^2+z^2 = 1";
+  static std::string formula() { return "x^2+y^2+z^2 = 1"; }
   static void evaluate(const double* x, double* f, double* g, double* h) {
     if (f != nullptr) *f = x[0] * x[0] + x[1] * x[1] + x[2] * x[2] - 1;
     if (g != nullptr) {
@@ -31,7 +35,7 @@ struct Sphere {
 };
 
 struct Torus {
-  static constexpr const char* kFormula = "(x^2+y^2+z^2 + 0.84)^2 - 4*(x^2+y^2)";
+  static std::string formula() { return "(x^2+y^2+z^2 + 0.84)^2 - 4*(x^2+y^2)"; }
   static void evaluate(const double* x, double* f, double* g, double* h) {
     const double q = x[0] * x[0] + x[1] * x[1];
     const double s = q + x[2] * x[2] + 0.84;
@@ -55,7 +59,7 @@ struct Torus {
 };
 
 struct TangleCube {
-  static constexpr const char* kFormula = "x^4-5x^2 + y^4-5y^2 + z^4-5z^2 + 11.8";
+  static std::string formula() { return "x^4-5x^2 + y^4-5y^2 + z^4-5z^2 + 11.8"; }
   static void evaluate(const double* x, double* f, double* g, double* h) {
     double sum = 11.8;
     for (int i = 0; i < 3; ++i) {
@@ -70,7 +74,7 @@ struct TangleCube {
 };
 
 struct Gyroid {
-  static constexpr const char* kFormula = "sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)";
+  static std::string formula() { return "sin(x)*cos(y) + sin(y)*cos(z) + sin(z)*cos(x)"; }
   static void evaluate(const double* x, double* f, double* g, double* h) {
     const double sx = std::sin(x[0]), sy = std::sin(x[1]), sz = std::sin(x[2]);
     const double cx = std::cos(x[0]), cy = std::cos(x[1]), cz = std::cos(x[2]);
@@ -91,6 +95,67 @@ struct Gyroid {
   }
 };
 
+/// 64 soft balls blended into one body: 700 operations, 64 of them exponentials.
+struct Blobs {
+  static constexpr int kBalls = 64;
+
+  struct Ball {
+    double centre[3];
+    double sharpness;
+  };
+
+  static const std::vector<Ball>& balls() {
+    static const std::vector<Ball> all = [] {
+      std::mt19937 random(7);
+      std::uniform_real_distribution<double> place(-1, 1), sharpness(2, 8);
+      std::vector<Ball> made(kBalls);
+      for (Ball& ball : made) ball = {{place(random), place(random), place(random)}, sharpness(random)};
+      return made;
+    }();
+    return all;
+  }
+
+  static std::string formula() {
+    std::ostringstream text;
+    text.precision(17);
+    for (const Ball& ball : balls()) {
+      const auto& [x, y, z] = ball.centre;
+      text << "+exp(-" << ball.sharpness << "*((x-(" << x << "))^2+(y-(" << y << "))^2+(z-(" << z << "))^2))";
+    }
+    return text.str() + "=1";
+  }
+
+  static void evaluate(const double* x, double* f, double* g, double* h) {
+    double sum = -1;
+    double slope[3] = {};
+    double bend[9] = {};
+    for (const Ball& ball : balls()) {
+      const double u[3] = {x[0] - ball.centre[0], x[1] - ball.centre[1], x[2] - ball.centre[2]};
+      const double a = 2 * ball.sharpness;
+      const double e = std::exp(-ball.sharpness * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]));
+      sum += e;
+      if (g == nullptr) continue;
+      const double b = -a * e;
+      for (int i = 0; i < 3; ++i) slope[i] += b * u[i];
+      if (h == nullptr) continue;
+      const double c = a * a * e;
+      bend[0] += c * u[0] * u[0] + b;
+      bend[4] += c * u[1] * u[1] + b;
+      bend[8] += c * u[2] * u[2] + b;
+      bend[1] += c * u[0] * u[1];
+      bend[2] += c * u[0] * u[2];
+      bend[5] += c * u[1] * u[2];
+    }
+    if (f != nullptr) *f = sum;
+    if (g != nullptr) std::copy_n(slope, 3, g);
+    if (h == nullptr) return;
+    bend[3] = bend[1];
+    bend[6] = bend[2];
+    bend[7] = bend[5];
+    std::copy_n(bend, 9, h);
+  }
+};
+
 enum Wanted { kValue, kGradient, kHessian };
 
 Points sample_points(Index n) {
@@ -99,8 +164,8 @@ Points sample_points(Index n) {
 }
 
 void set_rate(benchmark::State& state, Index n) {
-  state.counters["ns/point"] = benchmark::Counter(
-      static_cast<double>(n) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_point"] = benchmark::Counter(
+      static_cast<double>(n), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 template <class Surface, Wanted wanted>
@@ -127,7 +192,7 @@ void by_formula(benchmark::State& state) {
   const Points x = sample_points(n);
   const Points weight = Points::Ones(1, n);
   Points f(1, n), g(3, n), h(9, n);
-  const auto evaluator = taut::parse_surface(Surface::kFormula).make_evaluator();
+  const auto evaluator = taut::parse_surface(Surface::formula()).make_evaluator();
   for (auto _ : state) {
     evaluator->evaluate({.n = n,
                          .x = x.data(),
@@ -146,7 +211,7 @@ void bounds(benchmark::State& state) {
   const Points lower = sample_points(n);
   const Points upper = lower.array() + 0.01;
   Points low(1, n), high(1, n);
-  const auto evaluator = taut::parse_surface(Surface::kFormula).make_evaluator();
+  const auto evaluator = taut::parse_surface(Surface::formula()).make_evaluator();
   for (auto _ : state) {
     evaluator->bounds(
         {.n = n, .lower = lower.data(), .upper = upper.data(), .value_lower = low.data(), .value_upper = high.data()});
@@ -162,7 +227,7 @@ void parse_and_compile(benchmark::State& state) {
   const double weight = 1;
   Points h(9, 1);
   for (auto _ : state) {
-    taut::parse_surface(Surface::kFormula)
+    taut::parse_surface(Surface::formula())
         .make_evaluator()
         ->evaluate({.n = 1, .x = x.data(), .weight = &weight, .hessian = h.data()});
   }
@@ -190,6 +255,7 @@ int main(int argc, char** argv) {
   register_surface<Torus>("torus");
   register_surface<TangleCube>("tangle_cube");
   register_surface<Gyroid>("gyroid");
+  register_surface<Blobs>("blobs");
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();
