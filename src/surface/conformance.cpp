@@ -275,6 +275,13 @@ class Checker {
                                .value_upper = upper.data()})) {
         return;
       }
+      Vector slope_lower(d_ * k_);
+      Vector slope_upper(d_ * k_);
+      const bool has_slopes = evaluator_->jacobian_bounds({.n = 1,
+                                                           .lower = box.lower.data(),
+                                                           .upper = box.upper.data(),
+                                                           .jacobian_lower = slope_lower.data(),
+                                                           .jacobian_upper = slope_upper.data()});
       for (Index s = 0; s < kSamplesPerBox; ++s) {
         Vector x = random_point(box);
         for (Index i = 0; i < d_; ++i) {
@@ -288,6 +295,18 @@ class Checker {
           text.precision(17);
           text << "F_" << i + 1 << " = " << value(i) << " lies outside of [" << lower(i) << ", " << upper(i)
                << "], the bounds of a box of relative size " << size << " around it";
+          violate("bounds", x, text.str());
+        }
+        if (!has_slopes) continue;
+        const Points slope = jacobian_at(x);
+        ++report_.num_checks;
+        for (Index e = 0; e < d_ * k_; ++e) {
+          if (!(slope.data()[e] < slope_lower(e)) && !(slope.data()[e] > slope_upper(e))) continue;
+          std::ostringstream text;
+          text.precision(17);
+          text << "dF_" << e / d_ + 1 << "/dx_" << e % d_ + 1 << " = " << slope.data()[e] << " lies outside of ["
+               << slope_lower(e) << ", " << slope_upper(e) << "], the bounds of a box of relative size " << size
+               << " around it";
           violate("bounds", x, text.str());
         }
       }

@@ -17,4 +17,6 @@ void Evaluator::hessian_times(const PointBatch& batch, const double* v, double* 
 
 bool Evaluator::bounds(const BoxBatch& /*batch*/) { return false; }
 
+bool Evaluator::jacobian_bounds(const BoxBatch& /*batch*/) { return false; }
+
 }  // namespace taut

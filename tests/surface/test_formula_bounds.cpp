@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <sstream>
 #include <string>
@@ -146,13 +147,15 @@ std::string random_formula(std::mt19937_64& random, int depth) {
   }
 }
 
-TEST(FormulaBounds, HoldSampledValuesOfRandomFormulas) {
-  setenv("RC_PARAMS", "seed=20261122 max_success=400", 0);  // the same formulas every time, unless asked otherwise
-  const bool held = rc::check("values lie inside the bounds", [](std::uint64_t seed) {
-    std::mt19937_64 random(seed);
-    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    std::string formula;
-    std::shared_ptr<const ImplicitFunction> function;
+/// A source of random formulas in x, y, z, boxes and points in them.
+struct RandomCase {
+  std::mt19937_64 random;
+  std::string formula;
+  std::shared_ptr<const ImplicitFunction> function;
+  Eigen::Vector3d lower;
+  Eigen::Vector3d upper;
+
+  explicit RandomCase(std::uint64_t seed) : random(seed) {
     while (!function) {  // some are constant, or not a number for any x
       formula = random_formula(random, 1 + static_cast<int>(random() % 5));
       try {
@@ -160,41 +163,154 @@ TEST(FormulaBounds, HoldSampledValuesOfRandomFormulas) {
       } catch (const ParseError&) {
       }
     }
-    const auto evaluator = function->make_evaluator();
-    const Index boxes = 16;
-    const Index samples = 12;
-    for (Index b = 0; b < boxes; ++b) {
-      const double scale = std::pow(10, b % 3 == 0 ? 600 * uniform() - 300 : 4 * uniform() - 2);
-      Eigen::Vector3d lower;
-      Eigen::Vector3d upper;
-      for (int i = 0; i < 3; ++i) {
-        const double centre = scale * (2 * uniform() - 1) * (random() % 8 == 0 ? 0 : 1);
-        const double half = std::abs(centre) * std::pow(10, -16 * uniform()) * (random() % 8 == 0 ? 0 : 1);
-        lower(i) = random() % 16 == 0 ? 0 : centre - half;
-        upper(i) = std::max(lower(i), centre + half);
-      }
+  }
+
+  double uniform() { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+  /// `any_size`: from 1e-300 to 1e300.
+  void next_box(bool any_size) {
+    const double scale = std::pow(10, any_size ? 600 * uniform() - 300 : 4 * uniform() - 2);
+    for (int i = 0; i < 3; ++i) {
+      const double centre = scale * (2 * uniform() - 1) * (random() % 8 == 0 ? 0 : 1);
+      const double half = std::abs(centre) * std::pow(10, -16 * uniform()) * (random() % 8 == 0 ? 0 : 1);
+      lower(i) = random() % 16 == 0 ? 0 : centre - half;
+      upper(i) = std::max(lower(i), centre + half);
+    }
+  }
+
+  Eigen::Vector3d next_point(bool corner) {
+    Eigen::Vector3d x;
+    for (int i = 0; i < 3; ++i) {
+      x(i) = corner ? (random() % 2 == 0 ? lower(i) : upper(i)) : lower(i) + uniform() * (upper(i) - lower(i));
+      x(i) = std::min(std::max(x(i), lower(i)), upper(i));
+    }
+    return x;
+  }
+
+  [[nodiscard]] std::string where(const Eigen::Vector3d& x) const {
+    std::ostringstream text;
+    text.precision(17);
+    text << formula << " at " << x.transpose() << " over " << lower.transpose() << " .. " << upper.transpose();
+    return text.str();
+  }
+};
+
+void use_the_same_formulas_every_time() { setenv("RC_PARAMS", "seed=20261122 max_success=400", 0); }
+
+constexpr Index kBoxes = 16;
+constexpr Index kSamples = 12;
+
+TEST(FormulaBounds, HoldSampledValuesOfRandomFormulas) {
+  use_the_same_formulas_every_time();
+  const bool held = rc::check("values lie inside the bounds", [](std::uint64_t seed) {
+    RandomCase test(seed);
+    const auto evaluator = test.function->make_evaluator();
+    for (Index b = 0; b < kBoxes; ++b) {
+      test.next_box(b % 3 == 0);
       double low = 0;
       double high = 0;
       RC_ASSERT(evaluator->bounds(
-          {.n = 1, .lower = lower.data(), .upper = upper.data(), .value_lower = &low, .value_upper = &high}));
-      for (Index s = 0; s < samples; ++s) {
-        Eigen::Vector3d x;
-        for (int i = 0; i < 3; ++i) {
-          x(i) = s % 3 == 0 ? (random() % 2 == 0 ? lower(i) : upper(i)) : lower(i) + uniform() * (upper(i) - lower(i));
-          x(i) = std::min(std::max(x(i), lower(i)), upper(i));
-        }
+          {.n = 1, .lower = test.lower.data(), .upper = test.upper.data(), .value_lower = &low, .value_upper = &high}));
+      for (Index s = 0; s < kSamples; ++s) {
+        const Eigen::Vector3d x = test.next_point(s % 3 == 0);
         double value = 0;
         evaluator->evaluate({.n = 1, .x = x.data(), .value = &value});
         if (std::isnan(value) || (low <= value && value <= high)) continue;
         std::ostringstream text;
         text.precision(17);
-        text << formula << " at " << x.transpose() << " is " << value << ", bounds " << low << " .. " << high
-             << " over " << lower.transpose() << " .. " << upper.transpose();
+        text << test.where(x) << ": " << value << ", bounds " << low << " .. " << high;
         RC_FAIL(text.str());
       }
     }
   });
   EXPECT_TRUE(held);
+}
+
+TEST(FormulaBounds, OfTheJacobianHoldItAndObeyTheMeanValueTheorem) {
+  use_the_same_formulas_every_time();
+  Index num_finite = 0;
+  const bool held = rc::check("slopes lie inside the bounds", [&](std::uint64_t seed) {
+    RandomCase test(seed);
+    const auto evaluator = test.function->make_evaluator();
+    for (Index b = 0; b < kBoxes; ++b) {
+      test.next_box(b % 3 == 0);
+      Eigen::Vector3d low;
+      Eigen::Vector3d high;
+      if (!evaluator->jacobian_bounds({.n = 1,
+                                       .lower = test.lower.data(),
+                                       .upper = test.upper.data(),
+                                       .jacobian_lower = low.data(),
+                                       .jacobian_upper = high.data()})) {
+        return;
+      }
+      const auto bounds_at = [&](const Eigen::Vector3d& x) {
+        Bounds at{};
+        evaluator->bounds(
+            {.n = 1, .lower = x.data(), .upper = x.data(), .value_lower = &at.lower, .value_upper = &at.upper});
+        return at;
+      };
+      const Eigen::Vector3d centre = test.next_point(false);
+      const Bounds from = bounds_at(centre);
+      for (Index s = 0; s < kSamples; ++s) {
+        const Eigen::Vector3d x = test.next_point(s % 3 == 0);
+        Eigen::Vector3d slope;
+        evaluator->evaluate({.n = 1, .x = x.data(), .jacobian = slope.data()});
+        for (int i = 0; i < 3; ++i) {
+          if (slope(i) < low(i) || slope(i) > high(i)) RC_FAIL(test.where(x) + ": a slope outside its bounds");
+        }
+        // F(x) - F(centre), each known to rounding, against the slopes times the step.
+        const Bounds to = bounds_at(x);
+        Bounds rise{0, 0};
+        for (int i = 0; i < 3; ++i) {
+          const double step = x(i) - centre(i);
+          rise.lower += step * (step > 0 ? low(i) : high(i));
+          rise.upper += step * (step > 0 ? high(i) : low(i));
+        }
+        const double rounding = 1e-15 * (std::abs(rise.lower) + std::abs(rise.upper)) +
+                                1e-15 * (low.cwiseAbs() + high.cwiseAbs()).dot(x.cwiseAbs() + centre.cwiseAbs());
+        if (!std::isfinite(rounding)) continue;
+        ++num_finite;
+        if (to.upper - from.lower < rise.lower - rounding || to.lower - from.upper > rise.upper + rounding) {
+          RC_FAIL(test.where(x) + ": rises more than its slopes allow");
+        }
+      }
+    }
+  });
+  EXPECT_TRUE(held);
+  EXPECT_GT(num_finite, 10'000);
+}
+
+TEST(FormulaBounds, OfTheJacobianAreGivenWhereTheyTellMore) {
+  const auto slopes = [](const std::string& formula, double lower, double upper) {
+    const Eigen::Vector2d a(lower, 0);
+    const Eigen::Vector2d b(upper, 0);
+    Eigen::Vector2d low(0, 0);
+    Eigen::Vector2d high(0, 0);
+    const bool known = parse_function(formula, {.dim = 2})
+                           ->make_evaluator()
+                           ->jacobian_bounds({.n = 1,
+                                              .lower = a.data(),
+                                              .upper = b.data(),
+                                              .jacobian_lower = low.data(),
+                                              .jacobian_upper = high.data()});
+    return known ? std::optional<Bounds>({low(0), high(0)}) : std::nullopt;
+  };
+  EXPECT_FALSE(slopes("x^2 + sqrt(abs(y))", 1, 2));  // exact as they are: every variable occurs once
+  EXPECT_FALSE(slopes("x^2 - x + sign(x)", 1, 2));   // a jump is no slope
+  EXPECT_FALSE(slopes("x + atan2(y, x)", 1, 2));
+  expect_near(*slopes("x^2 + x", 1, 2), 3, 5);
+  expect_near(*slopes("abs(x) + x", -1, 2), 0, 2);  // both sides of a kink
+  expect_near(*slopes("max(x, 0.5) + x", -1, 2), 1, 2);
+  expect_near(*slopes("max(x, 0.5) + x", 1, 2), 2, 2);
+  expect_near(*slopes("max(x, 0.5) + x", -2, 0), 1, 1);
+  expect_near(*slopes("cbrt(x) + x", -1, 1), -kInfinity, kInfinity);
+  expect_near(*slopes("log(x) + x", -1, 1), -kInfinity, kInfinity);
+  expect_near(*slopes("1/x + x", -1, 1), -kInfinity, 1);
+  // Constants that would round are left to the bounds: 1/3 and 0.1 + 1000.7 are not doubles.
+  for (const char* formula : {"x/3 + x^2 - x*x", "0.1x + 1000.7x"}) {
+    const Bounds found = *slopes(formula, 1, 2);
+    EXPECT_LT(found.lower, found.upper) << formula;
+  }
 }
 
 }  // namespace

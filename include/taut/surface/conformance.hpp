@@ -40,6 +40,7 @@ struct ConformanceReport {
 ///    Jacobian; the Hessian is exactly symmetric; hessian_times(v) = Hessian * v
 ///  - a batch equals its points one by one bit for bit, whatever is asked for together, and so does a second evaluator
 ///  - where `bounds` returns true, sampled values lie inside; NaN bounds are for boxes in which F is NaN everywhere
+///  - where `jacobian_bounds` returns true, sampled Jacobians lie inside
 ///  - a NaN coordinate gives a NaN value; nothing is thrown for NaN, infinite and huge coordinates
 /// Never throws for what `function` does wrong. Cost: some thousand evaluations a dimension.
 [[nodiscard]] ConformanceReport check_conformance(const ImplicitFunction& function, const Box& box,

@@ -18,13 +18,15 @@ struct PointBatch {
   double* hessian = nullptr;       ///< d x d x n, symmetric, both triangles: sum_i weight_i Hess F_i at point j
 };
 
-/// A batch of n boxes and bounds of F over them.
+/// A batch of n boxes and bounds over them: of F, or of its slopes.
 struct BoxBatch {
   Index n = 0;
-  const double* lower = nullptr;  ///< d x n
-  const double* upper = nullptr;  ///< d x n
-  double* value_lower = nullptr;  ///< k x n
-  double* value_upper = nullptr;  ///< k x n
+  const double* lower = nullptr;     ///< d x n
+  const double* upper = nullptr;     ///< d x n
+  double* value_lower = nullptr;     ///< k x n: for `bounds`
+  double* value_upper = nullptr;     ///< k x n
+  double* jacobian_lower = nullptr;  ///< d x k x n, laid out as in PointBatch: for `jacobian_bounds`
+  double* jacobian_upper = nullptr;  ///< d x k x n
 };
 
 /// Evaluates one function; owns the scratch memory for it, so each thread makes its own.
@@ -46,6 +48,13 @@ class Evaluator {
   /// Outward-rounded bounds of F over boxes. Returns false (and writes nothing) when the function has none. Both bounds
   /// of F_i are NaN where F_i is NaN all over the box: no zero can lie there.
   virtual bool bounds(const BoxBatch& batch);
+
+  /// Outward-rounded bounds of the Jacobian over boxes, both sides of a kink included. Where those of F_i are finite,
+  /// the mean value theorem holds: for points x and c of the box at which F_i has values, F_i(x) - F_i(c) lies in sum_a
+  /// [jacobian_lower_ia, jacobian_upper_ia] (x_a - c_a), whatever lies between them. So some are infinite or NaN where
+  /// F_i has a pole or a jump. Returns false (and writes nothing) when the function knows none, or when `bounds` are
+  /// already the range of F up to rounding, so that derivatives cannot tighten them.
+  virtual bool jacobian_bounds(const BoxBatch& batch);
 
  protected:
   Evaluator(Index dim, Index codim) : dim_(dim), codim_(codim) {}

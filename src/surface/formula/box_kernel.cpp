@@ -42,6 +42,13 @@ HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
   }
 }
 
+template <class F>
+HWY_INLINE void map3(const Instruction& ins, const Block& block, const F& f) {
+  for (std::size_t i = 0; i < block.size; i += hn::Lanes(D())) {
+    block.store(f(block.load(ins.a, i), block.load(ins.b, i), block.load(ins.c, i)), ins.dst, i);
+  }
+}
+
 void read_box(const BoxArrays& arrays, std::size_t first, std::size_t count, std::uint32_t entry, const Block& block,
               std::uint32_t slot_index) {
   double* slot = block[slot_index];
@@ -60,8 +67,8 @@ void read_box(const BoxArrays& arrays, std::size_t first, std::size_t count, std
 }
 
 /// A value that is undefined in all of a box has NaN bounds.
-void write_bounds(const BoxArrays& arrays, std::size_t first, std::size_t count, std::uint32_t entry,
-                  const Block& block, std::uint32_t slot) {
+void write_bounds(const BoxArrays& arrays, std::size_t first, std::size_t count, std::uint32_t array,
+                  std::uint32_t entry, const Block& block, std::uint32_t slot) {
   const D d;
   for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
     Interval x = block.load(slot, i);
@@ -71,8 +78,9 @@ void write_bounds(const BoxArrays& arrays, std::size_t first, std::size_t count,
   }
   const double* at = block[slot];
   for (std::size_t j = 0; j < count; ++j) {
-    arrays.value_lower[(first + j) * arrays.codim + entry] = at[j];
-    arrays.value_upper[(first + j) * arrays.codim + entry] = at[block.size + j];
+    const std::size_t to = (first + j) * arrays.output_stride[array] + entry;
+    arrays.output_lower[array][to] = at[j];
+    arrays.output_upper[array][to] = at[block.size + j];
   }
 }
 
@@ -87,13 +95,14 @@ void run_block(const Tape& tape, const BoxArrays& arrays, std::size_t first, std
         break;
       case Code::output_row:
         for (std::uint32_t entry = 0; entry < ins.a; ++entry) {
-          write_bounds(arrays, first, count, entry, block, tape.row_slots[ins.b + entry]);
+          write_bounds(arrays, first, count, ins.c, entry, block, tape.row_slots[ins.b + entry]);
         }
         break;
-      case Code::output: write_bounds(arrays, first, count, ins.b, block, ins.a); break;
+      case Code::output: write_bounds(arrays, first, count, ins.c, ins.b, block, ins.a); break;
       case Code::output_constant:
         for (std::size_t j = first; j < first + count; ++j) {
-          arrays.value_lower[j * arrays.codim + ins.b] = arrays.value_upper[j * arrays.codim + ins.b] = ins.value;
+          const std::size_t to = j * arrays.output_stride[ins.c] + ins.b;
+          arrays.output_lower[ins.c][to] = arrays.output_upper[ins.c][to] = ins.value;
         }
         break;
       case Code::constant:
@@ -142,10 +151,10 @@ void run_block(const Tape& tape, const BoxArrays& arrays, std::size_t first, std
       case Code::maximum: map2(ins, block, [](Interval a, Interval b) { return maximum(a, b); }); break;
       case Code::power: map2(ins, block, [](Interval a, Interval b) { return power(a, b); }); break;
       case Code::atan2: map2(ins, block, [](Interval a, Interval b) { return arctangent2(a, b); }); break;
-      case Code::less_equal:
-      case Code::choose:
-      case Code::keep:
-      case Code::drop:
+      case Code::less_equal: map2(ins, block, [](Interval a, Interval b) { return less_equal(a, b); }); break;
+      case Code::choose: map3(ins, block, [](Interval m, Interval a, Interval b) { return choose(m, a, b); }); break;
+      case Code::keep: map2(ins, block, [](Interval m, Interval a) { return choose(m, a, point(0)); }); break;
+      case Code::drop: map2(ins, block, [](Interval m, Interval a) { return choose(m, point(0), a); }); break;
       default: break;  // not on a tape for boxes
     }
   }

@@ -30,6 +30,31 @@ double odd_power(double a, std::uint32_t n) {
   return result;
 }
 
+/// Is the operation on doubles free of rounding?
+bool is_exact(Op op, double a, double b) {
+  constexpr double kNoUnderflow = 0x1p-960;  // products at least this large have an error that is a double, too
+  const auto product = [&](double c, double d) {
+    const double p = c * d;
+    return c == 0 || d == 0 || (std::abs(p) > kNoUnderflow && std::fma(c, d, -p) == 0);
+  };
+  switch (op) {
+    case Op::negate:
+    case Op::absolute:
+    case Op::sign:
+    case Op::minimum:
+    case Op::maximum: return true;
+    case Op::square: return product(a, a);
+    case Op::multiply: return product(a, b);
+    case Op::divide: return a == 0 || (std::abs(a) > kNoUnderflow && std::fma(a / b, b, -a) == 0);
+    case Op::add: {  // Knuth's exact error of a sum
+      const double sum = a + b;
+      const double part = sum - a;
+      return (a - (sum - part)) + (b - part) == 0;
+    }
+    default: return false;
+  }
+}
+
 double with_nan(double a, double b, double value) { return std::isnan(a) || std::isnan(b) ? a + b : value; }
 
 }  // namespace
@@ -71,6 +96,8 @@ double fold(Op op, double a, double b, std::uint32_t odd_exponent) {
     default: return std::numeric_limits<double>::quiet_NaN();
   }
 }
+
+bool Graph::folds(Op op, double a, double b) const { return !exact_ || is_exact(op, a, b); }
 
 NodeId Graph::intern(const Node& node) {
   if (2 * (nodes_.size() + 1) > table_.size()) grow_table();
@@ -128,18 +155,21 @@ NodeId Graph::negate(NodeId a) {
 NodeId Graph::square(NodeId a) {
   const Node node = nodes_[a];
   switch (node.op) {
-    case Op::constant: return constant(node.value * node.value);
+    case Op::constant:
+      if (folds(Op::square, node.value)) return constant(node.value * node.value);
+      break;
     case Op::negate:
     case Op::absolute: return square(node.a);
-    default: return intern({Op::square, a, kNoNode, kNoNode, 0});
+    default: break;
   }
+  return intern({Op::square, a, kNoNode, kNoNode, 0});
 }
 
 NodeId Graph::unary(Op op, NodeId a) {
   const Node node = nodes_[a];
   if (op == Op::negate) return negate(a);
   if (op == Op::square) return square(a);
-  if (node.op == Op::constant) return constant(fold(op, node.value, 0, 0));
+  if (node.op == Op::constant && folds(op, node.value)) return constant(fold(op, node.value, 0, 0));
   if (op == Op::absolute) {
     if (node.op == Op::absolute || node.op == Op::square || node.op == Op::sqrt || node.op == Op::exp) return a;
     if (node.op == Op::negate) return unary(op, node.a);
@@ -153,7 +183,7 @@ NodeId Graph::add(NodeId a, NodeId b) {
   const Node left = nodes_[a];
   const Node right = nodes_[b];
   if (right.op == Op::constant) {
-    if (left.op == Op::constant) return constant(left.value + right.value);
+    if (left.op == Op::constant && folds(Op::add, left.value, right.value)) return constant(left.value + right.value);
     if (right.value == 0) return a;
     return intern({Op::add, a, b, kNoNode, 0});
   }
@@ -178,7 +208,7 @@ NodeId Graph::multiply(NodeId a, NodeId b) {
   const Node right = nodes_[b];
   if (right.op == Op::constant) {
     const double c = right.value;
-    if (left.op == Op::constant) return constant(left.value * c);
+    if (left.op == Op::constant && folds(Op::multiply, left.value, c)) return constant(left.value * c);
     if (c == 1) return a;
     if (c == -1) return negate(a);
     if (left.op == Op::negate) return multiply(left.a, constant(-c));
@@ -206,7 +236,9 @@ NodeId Graph::divide(NodeId a, NodeId b) {
   const Node left = nodes_[a];
   const Node right = nodes_[b];
   if (right.op == Op::constant) {
-    if (left.op == Op::constant) return constant(left.value / right.value);
+    if (left.op == Op::constant && folds(Op::divide, left.value, right.value)) {
+      return constant(left.value / right.value);
+    }
     if (is_power_of_two(right.value)) return multiply(a, constant(1 / right.value));
   }
   if (left.op == Op::negate) return negate(divide(left.a, b));
@@ -220,7 +252,7 @@ NodeId Graph::integer_power(NodeId a, std::uint64_t n) {
   if (n % 2 == 0) return square(integer_power(a, n / 2));
   const Node node = nodes_[a];
   if (node.op == Op::negate) return negate(integer_power(node.a, n));
-  if (node.op == Op::constant) return constant(odd_power(node.value, static_cast<std::uint32_t>(n)));
+  if (node.op == Op::constant && !exact_) return constant(odd_power(node.value, static_cast<std::uint32_t>(n)));
   return intern({Op::odd_power, a, static_cast<NodeId>(n), kNoNode, 0});
 }
 
@@ -231,7 +263,7 @@ NodeId Graph::power(NodeId a, NodeId b) {
     return intern({Op::power, a, b, kNoNode, 0});
   }
   const double e = exponent.value;
-  if (base.op == Op::constant) return constant(fold(Op::power, base.value, e, 0));
+  if (base.op == Op::constant && !exact_) return constant(fold(Op::power, base.value, e, 0));
   const double size = std::abs(e);
   if (size <= kMaxMultipliedPower && 2 * size == std::floor(2 * size)) {
     const auto whole = static_cast<std::uint64_t>(size);
@@ -251,7 +283,9 @@ NodeId Graph::binary(Op op, NodeId a, NodeId b) {
     case Op::power: return power(a, b);
     default: break;
   }
-  if (is_constant(a) && is_constant(b)) return constant(fold(op, nodes_[a].value, nodes_[b].value, 0));
+  if (is_constant(a) && is_constant(b) && folds(op, nodes_[a].value, nodes_[b].value)) {
+    return constant(fold(op, nodes_[a].value, nodes_[b].value, 0));
+  }
   if (a == b && (op == Op::minimum || op == Op::maximum)) return a;
   return intern({op, a, b, kNoNode, 0});
 }

@@ -74,6 +74,10 @@ struct Node {
 /// stays, since x may be infinite.
 class Graph {
  public:
+  /// From now on constants are folded only where that does not round. A formula means what its folded constants say;
+  /// its derivatives, to bound slopes by, must be those of exactly that function.
+  void fold_exactly() { exact_ = true; }
+
   [[nodiscard]] const Node& operator[](NodeId id) const { return nodes_[id]; }
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
 
@@ -107,8 +111,11 @@ class Graph {
   NodeId intern(const Node& node);
   NodeId integer_power(NodeId a, std::uint64_t n);
   void grow_table();
+  /// May an operation on these constants be folded?
+  [[nodiscard]] bool folds(Op op, double a, double b = 0) const;
 
   std::vector<Node> nodes_;
+  bool exact_ = false;
   std::vector<NodeId> table_;  // open addressing, power-of-two size
 };
 

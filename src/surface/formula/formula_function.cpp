@@ -27,8 +27,10 @@ class FormulaEvaluator : public Evaluator {
   void evaluate(const PointBatch& batch) override;
   void hessian_times(const PointBatch& batch, const double* v, double* out) override;
   bool bounds(const BoxBatch& batch) override;
+  bool jacobian_bounds(const BoxBatch& batch) override;
 
  private:
+  void run_on_boxes(const Tape& tape, const BoxBatch& batch);
   void run(const Tape& tape, const PointArrays& arrays, std::size_t n);
   /// Points of a block: a multiple of the vector length, whose slots fit the cache where possible; no more than needed.
   [[nodiscard]] std::size_t block_size(std::size_t slots, std::size_t n) const;
@@ -43,6 +45,7 @@ class FormulaEvaluator : public Evaluator {
   std::size_t step_;
   const Tape* value_tape_ = nullptr;  // found once: asking the program takes a lock
   const Tape* bounds_tape_ = nullptr;
+  const Tape* jacobian_bounds_tape_ = nullptr;
   const Tape* jacobian_tape_ = nullptr;
   const Tape* hessian_tape_ = nullptr;
   const Tape* hessian_times_tape_ = nullptr;
@@ -183,18 +186,37 @@ void FormulaEvaluator::spread_nan(const PointBatch& batch, const double* value, 
 bool FormulaEvaluator::bounds(const BoxBatch& batch) {
   if (batch.n <= 0) return true;
   if (bounds_tape_ == nullptr) bounds_tape_ = &program_->bounds();
+  run_on_boxes(*bounds_tape_, batch);
+  return true;
+}
+
+bool FormulaEvaluator::jacobian_bounds(const BoxBatch& batch) {
+  if (jacobian_bounds_tape_ == nullptr) jacobian_bounds_tape_ = program_->jacobian_bounds();
+  if (jacobian_bounds_tape_ == nullptr) return false;
+  if (batch.n <= 0) return true;
+  const std::size_t entries = static_cast<std::size_t>(dim_) * static_cast<std::size_t>(codim_);
+  if (entries > kMaxOutputRow) {
+    std::fill_n(batch.jacobian_lower, static_cast<std::size_t>(batch.n) * entries, 0.0);
+    std::fill_n(batch.jacobian_upper, static_cast<std::size_t>(batch.n) * entries, 0.0);
+  }
+  run_on_boxes(*jacobian_bounds_tape_, batch);
+  return true;
+}
+
+void FormulaEvaluator::run_on_boxes(const Tape& tape, const BoxBatch& batch) {
   const auto n = static_cast<std::size_t>(batch.n);
-  const std::size_t slots_per_box = 3 * std::size_t{bounds_tape_->num_slots};
+  const auto d = static_cast<std::size_t>(dim_);
+  const auto k = static_cast<std::size_t>(codim_);
+  const std::size_t slots_per_box = 3 * std::size_t{tape.num_slots};
   const std::size_t block = block_size(slots_per_box, n);
-  run_boxes(*bounds_tape_,
+  run_boxes(tape,
             {.lower = batch.lower,
              .upper = batch.upper,
-             .dim = static_cast<std::size_t>(dim_),
-             .value_lower = batch.value_lower,
-             .value_upper = batch.value_upper,
-             .codim = static_cast<std::size_t>(codim_)},
+             .dim = d,
+             .output_lower = {batch.value_lower, batch.jacobian_lower},
+             .output_upper = {batch.value_upper, batch.jacobian_upper},
+             .output_stride = {k, k * d}},
             n, block, slots(slots_per_box * block));
-  return true;
 }
 
 }  // namespace

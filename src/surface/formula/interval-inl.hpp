@@ -49,7 +49,11 @@ HWY_INLINE V up_function(V x) { return up(x, kMaxUlp * kEpsilon); }
 HWY_INLINE V bits(M mask) { return hn::VecFromMask(D(), mask); }
 HWY_INLINE V either(V a, V b) { return hn::Or(a, b); }
 
-HWY_INLINE Interval point(double c) { return {lanes(c), lanes(c), lanes(0)}; }
+/// A constant; NaN, as in derivatives where a function has none, has no value and bounds nothing.
+HWY_INLINE Interval point(double c) {
+  if (c != c) return {lanes(-kInfinity), lanes(kInfinity), bits(hn::Eq(lanes(0), lanes(0)))};
+  return {lanes(c), lanes(c), lanes(0)};
+}
 
 /// A box as given: NaN bounds nothing.
 HWY_INLINE Interval from_box(Interval x) {
@@ -88,6 +92,24 @@ HWY_INLINE Interval minimum(const Interval& a, const Interval& b) {
 }
 HWY_INLINE Interval maximum(const Interval& a, const Interval& b) {
   return {hn::Max(a.lower, b.lower), hn::Max(a.upper, b.upper), either(a.undefined, b.undefined)};
+}
+
+/// Truth of a <= b all over the box: [1, 1] everywhere, [0, 0] nowhere, else [0, 1].
+HWY_INLINE Interval less_equal(const Interval& a, const Interval& b) {
+  const V one = lanes(1);
+  return {hn::IfThenElseZero(hn::Le(a.upper, b.lower), one), hn::IfThenZeroElse(hn::Gt(a.lower, b.upper), one),
+          either(a.undefined, b.undefined)};
+}
+
+/// Both branches where either may be taken.
+HWY_INLINE Interval choose(const Interval& truth, const Interval& if_true, const Interval& if_false) {
+  const M always = hn::Gt(truth.lower, lanes(0));
+  const M never = hn::Lt(truth.upper, lanes(1));
+  const auto pick = [&](V yes, V no, V both) { return hn::IfThenElse(always, yes, hn::IfThenElse(never, no, both)); };
+  return {pick(if_true.lower, if_false.lower, hn::Min(if_true.lower, if_false.lower)),
+          pick(if_true.upper, if_false.upper, hn::Max(if_true.upper, if_false.upper)),
+          either(truth.undefined,
+                 pick(if_true.undefined, if_false.undefined, hn::And(if_true.undefined, if_false.undefined)))};
 }
 
 /// A product of bounds, where an infinite one is only a bound: 0 * infinity = 0.

@@ -30,22 +30,24 @@ struct PointArrays {
 /// hwy::AllocateAligned does.
 void run_points(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block, double* slots);
 
-/// Boxes: n of them with `dim` coordinates, bounds of `codim` values. A value that is undefined (NaN) all over a box
-/// has NaN bounds.
+/// Boxes: n of them with `dim` coordinates. The bounds of entry e of output array i at box j are
+/// array[i][j * stride[i] + e]. A value that is undefined (NaN) all over a box has NaN bounds.
 struct BoxArrays {
+  static constexpr int kMaxArrays = 2;
   const double* lower = nullptr;
   const double* upper = nullptr;
   std::size_t dim = 0;
-  double* value_lower = nullptr;
-  double* value_upper = nullptr;
-  std::size_t codim = 0;
+  double* output_lower[kMaxArrays] = {};
+  double* output_upper[kMaxArrays] = {};
+  std::size_t output_stride[kMaxArrays] = {};
 };
 
 /// Largest error, in units in the last place, of an elementary function on lanes or in the C library that interval
 /// bounds allow for. The functions of the GNU C library are documented to err by at most 4 ulp (cbrt), the others by 2.
 inline constexpr double kMaxUlp = 8;
 
-/// Interval arithmetic over a tape that computes values only. `slots` holds 3 * tape.num_slots * block doubles.
+/// Interval arithmetic over a tape that computes values or first derivatives. `slots` holds 3 * tape.num_slots * block
+/// doubles.
 void run_boxes(const Tape& tape, const BoxArrays& arrays, std::size_t n, std::size_t block, double* slots);
 
 }  // namespace taut::detail

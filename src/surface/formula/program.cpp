@@ -22,7 +22,9 @@ std::vector<NodeId> nodes_of(const std::vector<Partial>& partials) {
 }  // namespace
 
 FormulaProgram::FormulaProgram(Graph graph, std::vector<NodeId> components, Index dim)
-    : dim_(dim), components_(std::move(components)), graph_(std::move(graph)) {}
+    : dim_(dim), components_(std::move(components)), graph_(std::move(graph)) {
+  graph_.fold_exactly();
+}
 
 std::vector<InputArray> FormulaProgram::inputs() const {
   const auto d = static_cast<std::uint32_t>(dim_);
@@ -107,6 +109,39 @@ const Tape& FormulaProgram::bounds() const {
     bounds_tape_ = compile_rows({static_cast<std::uint32_t>(codim()), 0, 0}, std::move(outputs), false);
   }
   return *bounds_tape_;
+}
+
+/// Interval arithmetic finds the range of an expression that reads every variable once (Moore 1966): all its operations
+/// are continuous and exact by themselves. And where one jumps, a derivative says nothing.
+bool FormulaProgram::derivatives_tighten() const {
+  bool reads_twice = false;
+  for (const NodeId component : components_) {
+    std::vector<bool> read(graph_.size());
+    for (const NodeId id : graph_.reachable({component})) {
+      const Node& node = graph_[id];
+      if (node.op == Op::sign || node.op == Op::atan2) return false;
+      const NodeId operands[3] = {node.a, node.b, node.c};
+      for (int i = 0; i < operand_count(node.op); ++i) {
+        if (graph_.is_constant(operands[i])) continue;
+        reads_twice = reads_twice || read[operands[i]];
+        read[operands[i]] = true;
+      }
+    }
+  }
+  return reads_twice;
+}
+
+const Tape* FormulaProgram::jacobian_bounds() const {
+  const std::scoped_lock lock(mutex_);
+  if (!jacobian_bounds_tape_) {
+    if (!derivatives_tighten()) return nullptr;
+    differentiate();
+    const auto d = static_cast<std::uint32_t>(dim_);
+    std::vector<Output> outputs;
+    for (const Partial& partial : jacobian_) outputs.push_back({1, partial.row * d + partial.column, partial.node});
+    jacobian_bounds_tape_ = compile_rows({0, static_cast<std::uint32_t>(codim()) * d, 0}, std::move(outputs), false);
+  }
+  return &*jacobian_bounds_tape_;
 }
 
 const Tape& FormulaProgram::jacobian() const {

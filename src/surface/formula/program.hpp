@@ -27,6 +27,8 @@ class FormulaProgram {
   [[nodiscard]] const Tape& value() const;
   /// Value, for boxes.
   [[nodiscard]] const Tape& bounds() const;
+  /// Jacobian, for boxes; null when it does not tell more about F than bounds() do.
+  [[nodiscard]] const Tape* jacobian_bounds() const;
   /// Value and Jacobian.
   [[nodiscard]] const Tape& jacobian() const;
   /// Value, Jacobian and weighted Hessian; null when the Hessian is too large an expression (dense in many dimensions).
@@ -39,6 +41,7 @@ class FormulaProgram {
   [[nodiscard]] Tape compile_outputs(bool with_jacobian, const std::vector<Partial>* hessian) const;
   [[nodiscard]] Tape compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs,
                                   bool fuse = true) const;
+  [[nodiscard]] bool derivatives_tighten() const;
   [[nodiscard]] NodeId weighted(NodeId node) const;
   [[nodiscard]] std::vector<InputArray> inputs() const;
 
@@ -55,6 +58,7 @@ class FormulaProgram {
   mutable std::vector<Partial> gradient_;  // of sum_i weight_i F_i; when k = 1 of F, weighted at the end
   mutable std::optional<Tape> value_tape_;
   mutable std::optional<Tape> bounds_tape_;
+  mutable std::optional<Tape> jacobian_bounds_tape_;
   mutable std::optional<Tape> jacobian_tape_;
   mutable std::optional<Tape> hessian_tape_;
   mutable std::optional<Tape> hessian_times_tape_;
