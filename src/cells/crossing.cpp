@@ -25,12 +25,21 @@ bool probe_bounds(Evaluator& evaluator, Index d, Index k) {
       {.n = 1, .lower = x.data(), .upper = x.data(), .value_lower = lower.data(), .value_upper = upper.data()});
 }
 
+bool probe_slopes(Evaluator& evaluator, Index d, Index k) {
+  const Vector x = Vector::Zero(d);
+  Vector lower(d * k);
+  Vector upper(d * k);
+  return evaluator.jacobian_bounds(
+      {.n = 1, .lower = x.data(), .upper = x.data(), .jacobian_lower = lower.data(), .jacobian_upper = upper.data()});
+}
+
 }  // namespace
 
 CrossingTest::CrossingTest(const Surface& surface, Vector origin, double size)
     : surface_(surface), origin_(std::move(origin)), size_(size), function_(surface.make_evaluator()) {
   const Index d = surface_.dim();
   has_bounds_ = probe_bounds(*function_, d, surface_.codim());
+  has_slopes_ = has_bounds_ && probe_slopes(*function_, d, surface_.codim());
   Index m = surface_.codim();
   if (surface_.domain() != nullptr) {
     domain_ = surface_.domain()->make_evaluator();
@@ -39,7 +48,8 @@ CrossingTest::CrossingTest(const Surface& surface, Vector origin, double size)
   }
   for (auto* a : {&lower_, &upper_, &centre_}) a->resize(idx(d * kBlock));
   for (auto* a : {&value_lower_, &value_upper_}) a->resize(idx(m * kBlock));
-  if (!has_bounds_ || (domain_ && !domain_has_bounds_)) jacobian_.resize(idx(d * m * kBlock));
+  if (!has_bounds_ || has_slopes_ || (domain_ && !domain_has_bounds_)) jacobian_.resize(idx(d * m * kBlock));
+  if (has_slopes_) jacobian_upper_.resize(jacobian_.size());
   if (!has_bounds_) {
     weight_.resize(idx(m * kBlock));
     hessian_.resize(idx(d * d * kBlock));
@@ -51,10 +61,13 @@ void CrossingTest::test(std::span<const std::int32_t> cells, int level, std::spa
   const Index d = surface_.dim();
   const Index n = static_cast<Index>(may_cross.size());
   const double scale = std::ldexp(1.0, level);
+  std::fill(may_cross.begin(), may_cross.end(), std::uint8_t{0});
   for (Index begin = 0; begin < n; begin += kBlock) {
     const Index count = std::min(kBlock, n - begin);
     const std::int32_t* cell = cells.data() + begin * d;
+    kept_.clear();
     for (Index j = 0; j < count; ++j) {
+      kept_.push_back(begin + j);
       for (Index a = 0; a < d; ++a) {
         // Exact products of integers, so that these are the faces of CellGrid to the last bit.
         const double c = scale * cell[j * d + a];
@@ -62,78 +75,124 @@ void CrossingTest::test(std::span<const std::int32_t> cells, int level, std::spa
         upper_[idx(j * d + a)] = origin_(a) + size_ * (c + scale);
       }
     }
-    test_block(count, may_cross.data() + begin);
+    if (surface_.box()) test_box();
+    if (has_bounds_) {
+      test_bounds();
+      if (has_slopes_) test_slopes();
+    } else {
+      test_taylor();
+    }
+    if (domain_) test_domain();
+    for (const Index j : kept_) may_cross[idx(j)] = 1;
   }
 }
 
-void CrossingTest::test_block(Index n, std::uint8_t* may_cross) {
-  std::fill(may_cross, may_cross + n, std::uint8_t{1});
-  if (surface_.box()) test_box(n, may_cross);
-  if (has_bounds_) {
-    test_bounds(n, may_cross);
-  } else {
-    test_taylor(n, may_cross);
+template <class Keep>
+void CrossingTest::retain(const Keep& keep) {
+  const Index d = surface_.dim();
+  std::size_t count = 0;
+  for (std::size_t slot = 0; slot < kept_.size(); ++slot) {
+    if (!keep(static_cast<Index>(slot))) continue;
+    if (count != slot) {
+      kept_[count] = kept_[slot];
+      const auto from = static_cast<std::ptrdiff_t>(slot) * d;
+      const auto to = static_cast<std::ptrdiff_t>(count) * d;
+      std::copy_n(lower_.begin() + from, d, lower_.begin() + to);
+      std::copy_n(upper_.begin() + from, d, upper_.begin() + to);
+    }
+    ++count;
   }
-  if (domain_) test_domain(n, may_cross);
+  kept_.resize(count);
 }
 
-void CrossingTest::test_box(Index n, std::uint8_t* may_cross) const {
+void CrossingTest::find_centres() {
+  const std::size_t count = kept_.size() * idx(surface_.dim());
+  for (std::size_t i = 0; i < count; ++i) centre_[i] = 0.5 * (lower_[i] + upper_[i]);
+}
+
+void CrossingTest::test_box() {
   const Index d = surface_.dim();
   const Box& box = *surface_.box();
-  for (Index j = 0; j < n; ++j) {
+  retain([&](Index slot) {
     for (Index a = 0; a < d; ++a) {
-      if (lower_[idx(j * d + a)] > box.upper(a) || upper_[idx(j * d + a)] < box.lower(a)) may_cross[j] = 0;
+      if (lower_[idx(slot * d + a)] > box.upper(a) || upper_[idx(slot * d + a)] < box.lower(a)) return false;
     }
-  }
+    return true;
+  });
 }
 
-void CrossingTest::test_bounds(Index n, std::uint8_t* may_cross) {
+void CrossingTest::test_bounds() {
   const Index k = surface_.codim();
-  function_->bounds({.n = n,
+  function_->bounds({.n = static_cast<Index>(kept_.size()),
                      .lower = lower_.data(),
                      .upper = upper_.data(),
                      .value_lower = value_lower_.data(),
                      .value_upper = value_upper_.data()});
-  for (Index j = 0; j < n; ++j) {
+  retain([&](Index slot) {
     // Bounds that are both NaN: F has no value in the whole cell.
-    for (Index i = 0; i < k; ++i) {
-      const double lower = value_lower_[idx(j * k + i)];
-      const double upper = value_upper_[idx(j * k + i)];
-      if (lower > 0 || upper < 0 || (std::isnan(lower) && std::isnan(upper))) may_cross[j] = 0;
+    for (Index i = slot * k; i < (slot + 1) * k; ++i) {
+      const double lower = value_lower_[idx(i)];
+      const double upper = value_upper_[idx(i)];
+      if (lower > 0 || upper < 0 || (std::isnan(lower) && std::isnan(upper))) return false;
     }
-  }
+    return true;
+  });
 }
 
-void CrossingTest::test_taylor(Index n, std::uint8_t* may_cross) {
+void CrossingTest::test_slopes() {
   const Index d = surface_.dim();
   const Index k = surface_.codim();
-  // Only what the box left is worth an evaluation.
-  kept_.clear();
-  for (Index j = 0; j < n; ++j) {
-    if (may_cross[j] == 0) continue;
-    const Index slot = static_cast<Index>(kept_.size());
-    for (Index a = 0; a < d; ++a) {
-      centre_[idx(slot * d + a)] = 0.5 * (lower_[idx(j * d + a)] + upper_[idx(j * d + a)]);
+  const Index n = static_cast<Index>(kept_.size());
+  if (n == 0) return;
+  find_centres();
+  function_->bounds({.n = n,
+                     .lower = centre_.data(),
+                     .upper = centre_.data(),
+                     .value_lower = value_lower_.data(),
+                     .value_upper = value_upper_.data()});
+  function_->jacobian_bounds({.n = n,
+                              .lower = lower_.data(),
+                              .upper = upper_.data(),
+                              .jacobian_lower = jacobian_.data(),
+                              .jacobian_upper = jacobian_upper_.data()});
+  // Rounding of the distances, of their products with the slopes, of the sum.
+  const double above = 1 + 2 * static_cast<double>(d + 4) * std::numeric_limits<double>::epsilon();
+  retain([&](Index slot) {
+    for (Index i = slot * k; i < (slot + 1) * k; ++i) {
+      double reach = std::numeric_limits<double>::min();
+      for (Index a = 0; a < d; ++a) {
+        const std::size_t at = idx(slot * d + a);
+        const double half = std::max(upper_[at] - centre_[at], centre_[at] - lower_[at]);
+        const std::size_t entry = idx(i * d + a);
+        reach += half * std::max(-jacobian_[entry], jacobian_upper_[entry]);
+      }
+      // Neither is true where a slope is not bounded or F has no value at the centre.
+      if (value_lower_[idx(i)] > above * reach || -value_upper_[idx(i)] > above * reach) return false;
     }
-    kept_.push_back(j);
-  }
-  const Index m = static_cast<Index>(kept_.size());
-  if (m == 0) return;
+    return true;
+  });
+}
+
+void CrossingTest::test_taylor() {
+  const Index d = surface_.dim();
+  const Index k = surface_.codim();
   for (Index i = 0; i < k; ++i) {
-    for (Index slot = 0; slot < m; ++slot) {
+    const Index n = static_cast<Index>(kept_.size());
+    if (n == 0) return;
+    find_centres();
+    for (Index slot = 0; slot < n; ++slot) {
       for (Index l = 0; l < k; ++l) weight_[idx(slot * k + l)] = l == i ? 1 : 0;
     }
-    function_->evaluate({.n = m,
+    function_->evaluate({.n = n,
                          .x = centre_.data(),
                          .value = value_lower_.data(),
                          .jacobian = jacobian_.data(),
                          .weight = weight_.data(),
                          .hessian = hessian_.data()});
-    for (Index slot = 0; slot < m; ++slot) {
-      const Index j = kept_[idx(slot)];
+    retain([&](Index slot) {
       double reach = 0;
       for (Index a = 0; a < d; ++a) {
-        const double half = 0.5 * (upper_[idx(j * d + a)] - lower_[idx(j * d + a)]);
+        const double half = 0.5 * (upper_[idx(slot * d + a)] - lower_[idx(slot * d + a)]);
         const double slope = std::abs(jacobian_[idx((slot * k + i) * d + a)]);
         reach += slope * (half + kRounding * (half + std::abs(centre_[idx(slot * d + a)])));
         for (Index b = 0; b < d; ++b) {
@@ -141,36 +200,26 @@ void CrossingTest::test_taylor(Index n, std::uint8_t* may_cross) {
         }
       }
       const double value = value_lower_[idx(slot * k + i)];
-      if (std::isnan(value) || std::abs(value) > reach) may_cross[j] = 0;
-    }
+      return !std::isnan(value) && !(std::abs(value) > reach);
+    });
   }
 }
 
-void CrossingTest::test_domain(Index n, std::uint8_t* may_cross) {
+void CrossingTest::test_domain() {
   const Index d = surface_.dim();
   const Index m = surface_.domain()->codim();
-  kept_.clear();
-  for (Index j = 0; j < n; ++j) {
-    if (may_cross[j] == 0) continue;
-    const Index slot = static_cast<Index>(kept_.size());
-    for (Index a = 0; a < d; ++a) {  // slot <= j: packing in place
-      lower_[idx(slot * d + a)] = lower_[idx(j * d + a)];
-      upper_[idx(slot * d + a)] = upper_[idx(j * d + a)];
-      centre_[idx(slot * d + a)] = 0.5 * (lower_[idx(j * d + a)] + upper_[idx(j * d + a)]);
-    }
-    kept_.push_back(j);
-  }
-  const Index count = static_cast<Index>(kept_.size());
-  if (count == 0) return;
+  const Index n = static_cast<Index>(kept_.size());
+  if (n == 0) return;
   if (domain_has_bounds_) {
-    domain_->bounds({.n = count,
+    domain_->bounds({.n = n,
                      .lower = lower_.data(),
                      .upper = upper_.data(),
                      .value_lower = value_lower_.data(),
                      .value_upper = value_upper_.data()});
   } else {
-    domain_->evaluate({.n = count, .x = centre_.data(), .value = value_upper_.data(), .jacobian = jacobian_.data()});
-    for (Index slot = 0; slot < count; ++slot) {
+    find_centres();
+    domain_->evaluate({.n = n, .x = centre_.data(), .value = value_upper_.data(), .jacobian = jacobian_.data()});
+    for (Index slot = 0; slot < n; ++slot) {
       for (Index i = 0; i < m; ++i) {
         double reach = 0;
         for (Index a = 0; a < d; ++a) {
@@ -181,12 +230,12 @@ void CrossingTest::test_domain(Index n, std::uint8_t* may_cross) {
       }
     }
   }
-  for (Index slot = 0; slot < count; ++slot) {
-    for (Index i = 0; i < m; ++i) {
-      const double upper = value_upper_[idx(slot * m + i)];
-      if (upper < 0 || std::isnan(upper)) may_cross[kept_[idx(slot)]] = 0;
+  retain([&](Index slot) {
+    for (Index i = slot * m; i < (slot + 1) * m; ++i) {
+      if (value_upper_[idx(i)] < 0 || std::isnan(value_upper_[idx(i)])) return false;
     }
-  }
+    return true;
+  });
 }
 
 }  // namespace taut

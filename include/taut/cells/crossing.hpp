@@ -14,7 +14,10 @@ namespace taut {
 ///
 /// Where F has interval bounds (`rigorous()`), the answer "no" is a proof, up to the bounds' own: some component of F
 /// keeps off 0 in the whole closed cell, or some component of the domain stays negative. So no crossed cell is ever
-/// lost; overestimating bounds keep a few cells too many, fewer the smaller the cell.
+/// lost; overestimating bounds keep a few cells too many. Where the Jacobian has bounds |F_a| <= G_a over the cell,
+/// too, the mean value theorem is asked as well (Moore 1966): "no" when for some component, with c the centre,
+///   |F(c)| > h/2 sum_a G_a.
+/// That overestimates by O(h^2), so the smaller the cells, the fewer too many.
 ///
 /// Where it has none, F is taken as its Taylor polynomial at the centre c of the cell of edge h, the second-order
 /// term doubled as an allowance for what the third derivatives do: "no" when for some component
@@ -41,11 +44,16 @@ class CrossingTest {
   [[nodiscard]] bool has_bounds() const { return has_bounds_; }
 
  private:
-  void test_block(Index n, std::uint8_t* may_cross);
-  void test_box(Index n, std::uint8_t* may_cross) const;
-  void test_bounds(Index n, std::uint8_t* may_cross);
-  void test_taylor(Index n, std::uint8_t* may_cross);
-  void test_domain(Index n, std::uint8_t* may_cross);
+  // Each drops cells of the block.
+  void test_box();
+  void test_bounds();
+  void test_slopes();
+  void test_taylor();
+  void test_domain();
+  /// Leaves only the cells of the block for which `keep(slot)`.
+  template <class Keep>
+  void retain(const Keep& keep);
+  void find_centres();
 
   Surface surface_;
   Vector origin_;
@@ -53,10 +61,12 @@ class CrossingTest {
   std::unique_ptr<Evaluator> function_;
   std::unique_ptr<Evaluator> domain_;  // null = nowhere cut
   bool has_bounds_ = false;
+  bool has_slopes_ = false;
   bool domain_has_bounds_ = false;
-  // Of the block being tested.
-  std::vector<double> lower_, upper_, centre_, value_lower_, value_upper_, jacobian_, weight_, hessian_;
+  // Of the block being tested: the cells still in question, a slot each.
   std::vector<Index> kept_;
+  std::vector<double> lower_, upper_, centre_, value_lower_, value_upper_, jacobian_, jacobian_upper_, weight_,
+      hessian_;
 };
 
 }  // namespace taut
