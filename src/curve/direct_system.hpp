@@ -41,6 +41,15 @@ class DirectSystem {
     y_.resize(q_, n);
     negative_.resize(q_, n);
     chain_.resize(curve.degree(), curve.num_elements(), q_);
+    const int p = curve.degree();
+    fan_.resize((p + 1) * q_, d_);
+    stiffness_.resize((p + 1) * q_, p - 1);
+    for (int i = 1; i < p; ++i) {
+      for (int j = 0; j <= p; ++j) {
+        const Index slot = j == 0 ? p - 1 : j == p ? p : j - 1;
+        stiffness_.col(i - 1).segment(slot * q_, q_).setConstant(curve.element->stiffness(i, j));
+      }
+    }
   }
 
   /// What a visit of the evaluator should bring besides F and J. `batch` has room for weights.
@@ -185,28 +194,27 @@ class DirectSystem {
     for (Index e = 0; e < m; ++e) {
       const double scale = curve.scale(e);
       const Index first = e * p;
+      for (int j = 0; j <= p; ++j) {
+        const bool fixed = !ends_free && ((j == 0 && e == 0) || (j == p && e + 1 == m));
+        const Index slot = j == 0 ? inner : j == p ? inner + q_ : (j - 1) * q_;
+        if (fixed) {
+          fan_.middleRows(slot, q_).setZero();
+        } else {
+          fan_.middleRows(slot, q_) = tangents(first + j).transpose();
+        }
+      }
       for (int i = 1; i < p; ++i) {
+        const Index slot = (i - 1) * q_;
+        const Index columns = inner + 2 * q_ - slot;
         const auto ti = tangents(first + i);
-        for (Index a = 0; a < q_; ++a) chain_.row(e, (i - 1) * q_ + a)[chain_.width() - 1] = right_(a, first + i);
-        for (int j = 0; j <= p; ++j) {
-          if (j > 0 && j < i) continue;
-          const bool boundary = !ends_free && ((j == 0 && e == 0) || (j == p && e + 1 == m));
-          const Index column = j == 0 ? inner : j == p ? inner + q_ : (j - 1) * q_;
-          const double stiffness = scale * curve.element->stiffness(i, j);
-          if (boundary) {
-            block_.setZero();
-          } else if (j == i) {
-            block_.setIdentity();
-            block_ *= stiffness;
-            if (curvature) block_ += curvature_block(first + i);
-          } else {
-            block_.noalias() = ti.transpose() * tangents(first + j);
-            block_ *= stiffness;
+        for (Index a = 0; a < q_; ++a) {
+          double* row = chain_.row(e, slot + a);
+          Eigen::Map<Eigen::VectorXd>(row + slot, columns).noalias() =
+              scale * stiffness_.col(i - 1).tail(columns).cwiseProduct(fan_.bottomRows(columns).lazyProduct(ti.col(a)));
+          if (curvature) {
+            for (Index b = 0; b < q_; ++b) row[slot + b] += curvature_block(first + i)(a, b);
           }
-          for (Index a = 0; a < q_; ++a) {
-            double* row = chain_.row(e, (i - 1) * q_ + a) + column;
-            for (Index b = 0; b < q_; ++b) row[b] = block_(a, b);
-          }
+          row[chain_.width() - 1] = right_(a, first + i);
         }
       }
       auto ends = chain_.end_block(e);
@@ -237,6 +245,10 @@ class DirectSystem {
   Index q_;
   Eigen::MatrixXd hessian_, tangents_, curvature_;
   Reduced right_, y_, negative_;
+  // Of one element, in the chain's order of unknowns (inner nodes, left end, right end): tangents, and for every inner
+  // node its row of the stiffness matrix, each entry q times.
+  Eigen::Matrix<double, Eigen::Dynamic, D> fan_;
+  Eigen::MatrixXd stiffness_;
   ElementChain<Q> chain_;
   Eigen::Matrix<double, D, Q> hessian_tangents_;
   Eigen::Matrix<double, Q, Q> block_;

@@ -62,25 +62,15 @@ class ElementChain {
   /// Eliminates the inner unknowns of element e: U^T U in its rows, the Schur complement in its end block. False when
   /// they are not positive definite.
   bool condense(Eigen::Index e) {
-    const Eigen::Index w = width_;
-    for (Eigen::Index k = 0; k < inner_; ++k) {
-      double* __restrict pivot_row = row(e, k);
-      const double pivot = pivot_row[k];
-      if (!(pivot > 0)) return false;
-      const double scale = 1 / std::sqrt(pivot);
-      for (Eigen::Index j = k; j < w; ++j) pivot_row[j] *= scale;
-      for (Eigen::Index i = k + 1; i < inner_; ++i) {
-        double* __restrict target = row(e, i);
-        const double factor = pivot_row[i];
-        for (Eigen::Index j = i; j < w; ++j) target[j] -= factor * pivot_row[j];
-      }
-    }
+    constexpr int kHigh = Q == 2 ? 14 : Eigen::Dynamic;  // degree 8 on surfaces in space
+    const bool definite = inner_ == kHigh ? eliminate_inner<kHigh>(e) : eliminate_inner<Eigen::Dynamic>(e);
+    if (!definite) return false;
     auto block = end_block(e);
     auto right = end_right(e);
     for (Eigen::Index k = 0; k < inner_; ++k) {
       Eigen::Map<const EndSegment> ends(row(e, k) + inner_, 2 * q_);
       block.noalias() -= ends * ends.transpose();
-      right -= ends * row(e, k)[w - 1];
+      right -= ends * row(e, k)[width_ - 1];
     }
     ++condensed_;
     return true;
@@ -173,6 +163,28 @@ class ElementChain {
   }
 
  private:
+  // U^T U of the inner unknowns, applied to the columns of both ends and the right side. `Inner` is their number where
+  // it is known at compile time.
+  template <int Inner>
+  bool eliminate_inner(Eigen::Index e) {
+    const Eigen::Index inner = Inner == Eigen::Dynamic ? inner_ : Inner;
+    const Eigen::Index w = Inner == Eigen::Dynamic ? width_ : Inner + 2 * Q + 1;
+    double* __restrict rows = row(e, 0);
+    for (Eigen::Index k = 0; k < inner; ++k) {
+      double* __restrict pivot_row = rows + k * w;
+      const double pivot = pivot_row[k];
+      if (!(pivot > 0)) return false;
+      const double scale = 1 / std::sqrt(pivot);
+      for (Eigen::Index j = k; j < w; ++j) pivot_row[j] *= scale;
+      for (Eigen::Index i = k + 1; i < inner; ++i) {
+        double* __restrict target = rows + i * w;
+        const double factor = pivot_row[i];
+        for (Eigen::Index j = i; j < w; ++j) target[j] -= factor * pivot_row[j];
+      }
+    }
+    return true;
+  }
+
   [[nodiscard]] Eigen::Map<Block> block_of(std::vector<double>& store, Eigen::Index j) const {
     return Eigen::Map<Block>(store.data() + j * q_ * q_, q_, q_);
   }

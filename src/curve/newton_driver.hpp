@@ -167,7 +167,7 @@ class NewtonDriver : public NewtonSolver::Backend {
 
   // The turn of the normal an element of degree p may see at this tolerance; measured (docs/newton.md).
   [[nodiscard]] double turn_allowed(int p) const {
-    const double at_1e12 = options_.leave_saddles ? 0.7 : 0.35;  // a saddle wants a start that is resolved
+    const double at_1e12 = options_.leave_saddles ? 0.6 : 0.35;  // a saddle wants a start that is resolved
     return std::min(1.2, at_1e12 * std::pow(options_.tolerance / 1e-12, 1.0 / (2 * p)));
   }
 
@@ -446,10 +446,15 @@ class NewtonDriver : public NewtonSolver::Backend {
       double largest = 0;
       for (Index j = 1; j + 1 < n; ++j) {
         Eigen::Map<const Eigen::Matrix<double, D, K>> gradients(jacobian.col(j).data(), d, k);
-        if (!value.col(j).allFinite() || !frame.compute(gradients)) continue;
-        frame.pseudo_inverse(value.col(j), scratch, step);
+        if (!value.col(j).allFinite()) continue;
+        if constexpr (K == 1) {
+          step = gradients * (value(0, j) / gradients.squaredNorm());
+        } else {
+          if (!frame.compute(gradients)) continue;
+          frame.pseudo_inverse(value.col(j), scratch, step);
+        }
         const double size = step.norm();
-        if (size > 0.1 * check_.length) continue;
+        if (!(size <= 0.1 * check_.length)) continue;
         largest = std::max(largest, size);
         points.col(j) -= step;
       }

@@ -19,6 +19,7 @@ class TangentFrame {
 
   void resize(Eigen::Index d, Eigen::Index k) {
     reflectors_.resize(d, k);
+    beta_.resize(k);
     upper_.resize(k, k);
     full_.resize(d, d);
   }
@@ -32,24 +33,27 @@ class TangentFrame {
     for (Eigen::Index i = 0; i < k; ++i) {
       const double whole = gradients.col(i).norm();
       auto column = reflectors_.col(i).tail(d - i);
-      const double norm = column.norm();
+      const double norm = i == 0 ? whole : column.norm();
       if (!(norm > 1e-11 * whole) || !std::isfinite(norm)) return false;
       const double head = column(0);
       const double pivot = head > 0 ? -norm : norm;
-      column(0) = head - pivot;
-      column /= std::sqrt(norm * (norm + std::abs(head)));  // now H = I - v v^T
+      column(0) = head - pivot;  // now H = I - beta v v^T
+      beta_(i) = 1 / (norm * (norm + std::abs(head)));
       upper_.col(i).head(i) = reflectors_.col(i).head(i);
       upper_(i, i) = pivot;
       for (Eigen::Index j = i + 1; j < k; ++j) {
-        const double dot = column.dot(reflectors_.col(j).tail(d - i));
+        const double dot = beta_(i) * column.dot(reflectors_.col(j).tail(d - i));
         reflectors_.col(j).tail(d - i) -= dot * column;
       }
     }
+    // The product of the reflections; the first to be applied meets unit vectors.
+    const auto last = reflectors_.col(k - 1).tail(d - k + 1);
     full_.setIdentity();
-    for (Eigen::Index i = k; i-- > 0;) {
+    for (Eigen::Index j = k - 1; j < d; ++j) full_.col(j).tail(d - k + 1) -= (beta_(k - 1) * last(j - k + 1)) * last;
+    for (Eigen::Index i = k - 1; i-- > 0;) {
       const auto v = reflectors_.col(i).tail(d - i);
       for (Eigen::Index j = i; j < d; ++j) {
-        const double dot = v.dot(full_.col(j).tail(d - i));
+        const double dot = beta_(i) * v.dot(full_.col(j).tail(d - i));
         full_.col(j).tail(d - i) -= dot * v;
       }
     }
@@ -91,6 +95,7 @@ class TangentFrame {
   }
 
   Eigen::Matrix<double, D, K> reflectors_;
+  VectorK beta_;
   Eigen::Matrix<double, K, K> upper_;  // strictly lower part unused
   Eigen::Matrix<double, D, D> full_;   // normals, then tangents
 };

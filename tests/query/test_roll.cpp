@@ -19,10 +19,10 @@ using test::RollPair;
 
 Surface fitted(const PointCloud& cloud) { return make_surface(std::make_shared<const RbfModel>(fit_rbf(cloud))); }
 
-/// Default cells and smaller ones: both within `accuracy` of the truth, and within 1e-6 of each other. `out` says how
-/// far from the mid-surface the pair stands.
+/// Default cells and smaller ones: both within `accuracy` of the truth, and within `agreement` of each other. `out`
+/// says how far from the mid-surface the pair stands.
 void expect_going_round(const Surface& roll, const RollPair& pair, CorrectionMethod method, double accuracy,
-                        double out = 0) {
+                        double out = 0, double agreement = 1e-6) {
   const double truth = pair.distance(out);
   double lengths[2];
   for (int i = 0; i < 2; ++i) {
@@ -36,7 +36,7 @@ void expect_going_round(const Surface& roll, const RollPair& pair, CorrectionMet
     EXPECT_TRUE(path.locally_shortest);
     lengths[i] = path.length;
   }
-  EXPECT_NEAR(lengths[0], lengths[1], 1e-6 * truth);
+  EXPECT_NEAR(lengths[0], lengths[1], agreement * truth);
 }
 
 TEST(Roll, NewtonGoesRound) {
@@ -63,7 +63,8 @@ TEST(Roll, NoisySamplesDoNotMakeItJump) {
   expect_going_round(roll, kRollPairs[2], CorrectionMethod::newton, 0.01);
 }
 
-// The swiss roll of manifold learning: samples at random, 21 high, with noise too mild to be smoothed.
+// The swiss roll of manifold learning: samples at random, 21 high, with noise too mild to be smoothed. The bumps it
+// leaves have shortest paths on either side, 7e-5 apart in length: closer than marched distances tell apart.
 TEST(Roll, SwissRollWithMildNoiseIsGoneRound) {
   PointCloud cloud = test::roll_cloud(1000);
   test::Uniform uniform(7);
@@ -72,7 +73,7 @@ TEST(Roll, SwissRollWithMildNoiseIsGoneRound) {
   RollPair pair = kRollPairs[1];
   pair.from_height += 6.5;
   pair.to_height += 6.5;
-  expect_going_round(roll, pair, CorrectionMethod::newton, 0.01);
+  expect_going_round(roll, pair, CorrectionMethod::newton, 0.01, 0, 2e-4);
 }
 
 // Both faces sampled: the path between two points on the face towards the axis stays on that face, which is the shorter
