@@ -2,29 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "output.hpp"
 #include "report.hpp"
 #include "terminal.hpp"
 
 namespace taut::app {
 
-ExitCode deliver_path(const PathDelivery& delivery, const Surface& surface, const PathResult& path,
-                      const nlohmann::ordered_json& json, const std::vector<SceneFact>& facts, const Context& context) {
-  if (delivery.json) {
-    std::cout << json.dump() << "\n";
+void DeliveryArguments::add_to(CLI::App& command) {
+  command.add_flag("--json", json, "the result as one JSON object on stdout");
+  files.add_to(command, OutputKind::path, "write");
+}
+
+ExitCode deliver_path(const DeliveryArguments& arguments, const PathOutput& output, const Context& context) {
+  const PathResult& path = *output.paths.front();
+  if (arguments.json) {
+    std::cout << output.json.dump() << "\n";
   } else {
-    std::cout << facts_text(facts);
+    std::cout << facts_text(output.facts);
   }
   if (path.points.cols() == 0) {
     print_error(path.message);
     return exit_code(path.status);
   }
-  write_paths(
-      delivery.out,
-      {.surface = surface, .paths = {&path}, .json = json, .facts = facts, .title = delivery.title, .up = delivery.up},
-      context);
+  write_paths(arguments.files, output, context);
   if (path.status != Status::ok) print_error(fmt::format("{}: {}", to_string(path.status), path.message));
   return exit_code(path.status);
 }

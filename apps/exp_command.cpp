@@ -10,6 +10,7 @@
 
 #include "checks.hpp"
 #include "commands.hpp"
+#include "deliver_path.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
 #include "points_argument.hpp"
@@ -32,9 +33,7 @@ struct ExpArguments {
   std::string rays;
   ExponentialOptions options;
   bool no_conjugate = false;
-  PictureArguments picture;
-  std::vector<std::string> out;
-  bool json = false;
+  DeliveryArguments delivery;
 };
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -97,28 +96,20 @@ ExitCode run_one(const ExpArguments& arguments, const Surface& surface, const Co
   const RayResult result = solver.solve(from, direction, *arguments.length);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   clear_progress();
-  const Json json = ray_json(surface, result, *arguments.length, seconds);
-  const std::vector<SceneFact> facts = ray_facts(result);
-  if (arguments.json) {
-    std::cout << json.dump() << "\n";
-  } else {
-    std::cout << facts_text(facts);
-  }
   PathResult drawn;
+  drawn.status = result.status;
+  drawn.message = result.message;
   drawn.from = result.from;
   drawn.to = result.point;
   drawn.length = std::abs(result.length);
   drawn.points = result.points;
-  write_paths(arguments.out,
-              {.surface = surface,
-               .paths = {&drawn},
-               .json = json,
-               .facts = facts,
-               .title = arguments.surface.surface,
-               .up = arguments.picture.up},
-              context);
-  if (result.status != Status::ok) print_error(fmt::format("{}: {}", to_string(result.status), result.message));
-  return exit_code(result.status);
+  return deliver_path(arguments.delivery,
+                      {.surface = surface,
+                       .paths = {&drawn},
+                       .json = ray_json(surface, result, *arguments.length, seconds),
+                       .facts = ray_facts(result),
+                       .title = arguments.surface.surface},
+                      context);
 }
 
 /// A ray as a line; one that stopped early, or never began, has no end point.
@@ -187,10 +178,10 @@ ExitCode run(ExpArguments arguments) {
   if (one == rays || (rays && any)) {
     throw UsageError("give --from, --dir and --length, or --rays (see taut exp --help)");
   }
-  if (rays && (arguments.json || !arguments.out.empty())) {
+  if (rays && (arguments.delivery.json || !arguments.delivery.files.out.empty())) {
     throw UsageError("--rays writes its lines to stdout; --json and --out are for one ray");
   }
-  check_outputs(arguments.out, OutputKind::path);
+  arguments.delivery.files.check(OutputKind::path);
   arguments.options.conjugate = !arguments.no_conjugate;
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
@@ -215,12 +206,7 @@ Run add_exp_command(CLI::App& app) {
       ->capture_default_str();
   command.add_flag("--no-conjugate", arguments->no_conjugate,
                    "do not look for conjugate points: faster in many dimensions");
-  command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
-  command
-      .add_option("--out", arguments->out,
-                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::path))
-      ->allow_extra_args(false);
-  arguments->picture.add_to(command);
+  arguments->delivery.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

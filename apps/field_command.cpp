@@ -27,8 +27,7 @@ struct FieldArguments {
   std::string at;
   FieldOptions options;
   double tolerance = 1e-9;
-  PictureArguments picture;
-  std::vector<std::string> out;
+  FileArguments files;
 };
 
 Points parse_sources(const std::vector<std::string>& texts, const Surface& surface) {
@@ -76,11 +75,11 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
 }
 
 ExitCode run(const FieldArguments& arguments) {
-  if (arguments.at.empty() == arguments.out.empty()) {
+  if (arguments.at.empty() == arguments.files.out.empty()) {
     throw UsageError(
         "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
   }
-  check_outputs(arguments.out, OutputKind::mesh);
+  arguments.files.check(OutputKind::mesh);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   const Points sources = parse_sources(arguments.from, surface);
@@ -105,12 +104,11 @@ ExitCode run(const FieldArguments& arguments) {
       {"cells", fmt::format("{} of size {:.4g}", grouped(field.num_cells), field.cell)},
       {"reached", fmt::format("{} of {} vertices", grouped(reached), grouped(distance.size()))},
       {"farthest", fmt::format("{:.6g}", farthest)}};
-  write_mesh_files(arguments.out, {.surface = surface,
-                                   .mesh = field.mesh,
-                                   .marks = sources,
-                                   .facts = facts,
-                                   .title = "Distances on " + arguments.surface.surface,
-                                   .up = arguments.picture.up});
+  write_mesh_files(arguments.files, {.surface = surface,
+                                     .mesh = field.mesh,
+                                     .marks = sources,
+                                     .facts = facts,
+                                     .title = "Distances on " + arguments.surface.surface});
   std::cout << facts_text(facts);
   return kDone;
 }
@@ -125,10 +123,6 @@ Run add_field_command(CLI::App& app) {
       ->required()
       ->allow_extra_args(false);
   command.add_option("--at", arguments->at, "points, one a line: writes distance,error for each, exact to --tol");
-  command
-      .add_option("--out", arguments->out,
-                  "the surface with marched distances, to FILE by extension: " + known_outputs(OutputKind::mesh))
-      ->allow_extra_args(false);
   command.add_option("--tol", arguments->tolerance, "relative tolerance of distances --at points")
       ->check(number_between(1e-13, 1e-3))
       ->capture_default_str();
@@ -136,7 +130,7 @@ Run add_field_command(CLI::App& app) {
   command.add_option("--march", arguments->options.march, "convergent, axis (the paper's) or dijkstra")
       ->transform(one_of<MarchMethod>(
           {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
-  arguments->picture.add_to(command);
+  arguments->files.add_to(command, OutputKind::mesh, "the surface with marched distances,");
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

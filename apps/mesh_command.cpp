@@ -21,24 +21,19 @@ struct MeshArguments {
   CommonArguments common;
   SurfaceArguments surface;
   double cell = 0;
-  PictureArguments picture;
-  std::vector<std::string> out;
+  FileArguments files;
 };
 
 ExitCode run(const MeshArguments& arguments) {
-  check_outputs(arguments.out, OutputKind::mesh);
+  arguments.files.check(OutputKind::mesh);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   const SurfaceMesh mesh = display_mesh(surface, {.cell = arguments.cell}, context);
   clear_progress();
   const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
                                         {"triangles", grouped(mesh.faces.cols())}};
-  write_mesh_files(arguments.out, {.surface = surface,
-                                   .mesh = mesh,
-                                   .marks = {},
-                                   .facts = facts,
-                                   .title = arguments.surface.surface,
-                                   .up = arguments.picture.up});
+  write_mesh_files(arguments.files,
+                   {.surface = surface, .mesh = mesh, .marks = {}, .facts = facts, .title = arguments.surface.surface});
   std::cout << facts_text(facts);
   return kDone;
 }
@@ -51,12 +46,7 @@ Run add_mesh_command(CLI::App& app) {
   arguments->surface.add_to(command);
   command.add_option("--cell", arguments->cell, "grid cell size: about the length of an edge (default: chosen)")
       ->check(positive_number());
-  command
-      .add_option("--out", arguments->out,
-                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::mesh))
-      ->required()
-      ->allow_extra_args(false);
-  arguments->picture.add_to(command);
+  arguments->files.add_to(command, OutputKind::mesh, "write")->required();
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

@@ -25,7 +25,7 @@ namespace {
 constexpr std::array kPathOutputs = {".json", ".csv", ".npy", ".ply", ".obj", ".vtp", ".html", ".svg", ".png"};
 constexpr std::array kMeshOutputs = {".ply", ".obj", ".off", ".stl", ".vtp", ".html", ".svg", ".png"};
 /// Cells drawn around a path: more than these only hide the surface.
-constexpr Index kMostCellsDrawn = 200000;
+constexpr Index kMostCellsDrawn = 50000;
 
 std::string extension_of(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -43,12 +43,18 @@ bool is_picture(const std::string& extension) {
   return extension == ".html" || extension == ".svg" || extension == ".png";
 }
 
-/// The surface, its cells and the paths. A surface that cannot be meshed is left out: the paths remain.
-Scene path_scene(const PathOutput& output, const Context& context) {
+/// ".json .csv ...": the extensions that can hold this kind.
+std::string known_outputs(OutputKind kind) {
+  return kind == OutputKind::path ? fmt::format("{}", fmt::join(kPathOutputs, " "))
+                                  : fmt::format("{}", fmt::join(kMeshOutputs, " "));
+}
+
+/// The surface, the cells that were walked and the paths. A surface that cannot be meshed is left out.
+Scene path_scene(const PathOutput& output, const Eigen::Vector3d& up, const Context& context) {
   Scene scene;
   scene.title = output.title;
   scene.facts = output.facts;
-  scene.up = output.up;
+  scene.up = up;
   const bool single = output.paths.size() == 1;
   for (const PathResult* path : output.paths) {
     scene.paths.push_back({.points = path->points, .label = "geodesic", .length = path->length});
@@ -63,26 +69,29 @@ Scene path_scene(const PathOutput& output, const Context& context) {
     SurfaceMesh mesh = display_mesh(output.surface, {}, context);
     scene.meshes.push_back({.mesh = std::move(mesh)});
   }
+  const double cell = output.paths.empty() ? 0 : output.paths.front()->cell;
+  if (output.surface.dim() <= 3 && cell > 0 && output.paths.front()->num_cells <= kMostCellsDrawn) {
+    Points centres = display_cells(output.surface, {.cell = cell}, context);
+    if (centres.cols() <= kMostCellsDrawn) scene.cells = {.centres = std::move(centres), .size = cell};
+  }
   return scene;
 }
 
 }  // namespace
 
-void PictureArguments::add_to(CLI::App& command) {
+CLI::Option* FileArguments::add_to(CLI::App& command, OutputKind kind, const std::string& what) {
   command
       .add_option_function<std::string>(
           "--up", [this](const std::string& axis) { up = Eigen::Vector3d::Unit(axis[0] - 'x'); },
           "axis that points up in pictures: x, y or z (default z)")
       ->check(CLI::IsMember({"x", "y", "z"}));
+  return command
+      .add_option("--out", out, fmt::format("{} to FILE, by extension (repeatable): {}", what, known_outputs(kind)))
+      ->allow_extra_args(false);
 }
 
-std::string known_outputs(OutputKind kind) {
-  return kind == OutputKind::path ? fmt::format("{}", fmt::join(kPathOutputs, " "))
-                                  : fmt::format("{}", fmt::join(kMeshOutputs, " "));
-}
-
-void check_outputs(const std::vector<std::string>& files, OutputKind kind) {
-  for (const std::string& file : files) {
+void FileArguments::check(OutputKind kind) const {
+  for (const std::string& file : out) {
     const std::string extension = extension_of(file);
     const bool known = kind == OutputKind::path ? std::ranges::count(kPathOutputs, extension) > 0
                                                 : std::ranges::count(kMeshOutputs, extension) > 0;
@@ -96,12 +105,12 @@ void check_outputs(const std::vector<std::string>& files, OutputKind kind) {
   }
 }
 
-void write_paths(const std::vector<std::string>& files, const PathOutput& output, const Context& context) {
+void write_paths(const FileArguments& files, const PathOutput& output, const Context& context) {
   std::optional<Scene> scene;
-  for (const std::string& file : files) {
+  for (const std::string& file : files.out) {
     const std::string extension = extension_of(file);
     if (is_picture(extension)) {
-      if (!scene) scene = path_scene(output, context);
+      if (!scene) scene = path_scene(output, files.up, context);
       write_picture(file, extension, *scene);
       continue;
     }
@@ -115,9 +124,9 @@ void write_paths(const std::vector<std::string>& files, const PathOutput& output
   }
 }
 
-void write_mesh_files(const std::vector<std::string>& files, const MeshOutput& output) {
+void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
   std::optional<Scene> scene;
-  for (const std::string& file : files) {
+  for (const std::string& file : files.out) {
     const std::string extension = extension_of(file);
     if (!is_picture(extension)) {
       write_mesh(file, output.mesh);
@@ -127,7 +136,7 @@ void write_mesh_files(const std::vector<std::string>& files, const MeshOutput& o
       scene.emplace();
       scene->title = output.title;
       scene->facts = output.facts;
-      scene->up = output.up;
+      scene->up = files.up;
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
       for (Index j = 0; j < output.marks.cols(); ++j) {

@@ -16,16 +16,15 @@ namespace taut::app {
 /// What a file is to hold.
 enum class OutputKind { path, mesh };
 
-/// ".json .csv ...": the extensions that can hold this kind.
-[[nodiscard]] std::string known_outputs(OutputKind kind);
-
-/// Throws UsageError when a file's extension cannot hold this kind: said before any work is done.
-void check_outputs(const std::vector<std::string>& files, OutputKind kind);
-
-/// --up: which axis points up in pictures.
-struct PictureArguments {
+/// --out and --up: the files to write, and which axis points up in pictures.
+struct FileArguments {
+  std::vector<std::string> out;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  void add_to(CLI::App& command);
+  /// `what` is written, for --help. Returns --out.
+  CLI::Option* add_to(CLI::App& command, OutputKind kind, const std::string& what);
+  /// Throws UsageError when a file's extension cannot hold the kind, IoError when its folder is not there: said before
+  /// any work is done.
+  void check(OutputKind kind) const;
 };
 
 struct PathOutput {
@@ -34,11 +33,10 @@ struct PathOutput {
   nlohmann::ordered_json json;
   std::vector<SceneFact> facts;  ///< for people, shown beside pictures
   std::string title;
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// Writes the paths to each file, by extension.
-void write_paths(const std::vector<std::string>& files, const PathOutput& output, const Context& context);
+void write_paths(const FileArguments& files, const PathOutput& output, const Context& context);
 
 struct MeshOutput {
   const Surface& surface;
@@ -46,10 +44,9 @@ struct MeshOutput {
   Points marks;  ///< 3 x m: points to show, such as the sources of a field
   std::vector<SceneFact> facts;
   std::string title;
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
 /// Writes the mesh, with its vertex scalars where the format has room for them, to each file, by extension.
-void write_mesh_files(const std::vector<std::string>& files, const MeshOutput& output);
+void write_mesh_files(const FileArguments& files, const MeshOutput& output);
 
 }  // namespace taut::app

@@ -40,9 +40,7 @@ struct PathArguments {
   std::string start;
   std::string closed;
   PathOptions options;
-  PictureArguments picture;
-  std::vector<std::string> out;
-  bool json = false;
+  DeliveryArguments delivery;
   bool verify = false;
 };
 
@@ -77,8 +75,9 @@ void add_verification(const Surface& surface, const PathResult& result, const Co
                              found.miss, std::abs(found.miss_along), found.amplification, to_string(found.status))});
 }
 
-PathDelivery delivery(const PathArguments& arguments) {
-  return {.json = arguments.json, .out = arguments.out, .title = arguments.surface.surface, .up = arguments.picture.up};
+PathOutput output_of(const PathArguments& arguments, const Surface& surface, const PathResult& result,
+                     const nlohmann::ordered_json& json, const std::vector<SceneFact>& facts) {
+  return {.surface = surface, .paths = {&result}, .json = json, .facts = facts, .title = arguments.surface.surface};
 }
 
 ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
@@ -92,7 +91,7 @@ ExitCode run_one(const PathArguments& arguments, const Surface& surface, const C
   auto json = path_json(surface, result, arguments.options, surface_seconds, total);
   std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
   if (arguments.verify) add_verification(surface, result, context, json, facts);
-  return deliver_path(delivery(arguments), surface, result, json, facts, context);
+  return deliver_path(arguments.delivery, output_of(arguments, surface, result, json, facts), context);
 }
 
 /// Through points on the way.
@@ -112,7 +111,7 @@ ExitCode run_via(const PathArguments& arguments, const Surface& surface, const C
   std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
   add_legs(result, json);
   add_legs(result, facts);
-  return deliver_path(delivery(arguments), surface, result, json, facts, context);
+  return deliver_path(arguments.delivery, output_of(arguments, surface, result, json, facts), context);
 }
 
 /// In the class of a polyline, or of a loop.
@@ -122,7 +121,7 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
   std::vector<SceneFact> facts;
   const auto deliver = [&](const PathResult& result) {
     if (arguments.verify) add_verification(surface, result, context, json, facts);
-    return deliver_path(delivery(arguments), surface, result, json, facts, context);
+    return deliver_path(arguments.delivery, output_of(arguments, surface, result, json, facts), context);
   };
   const auto describe = [&](const PathResult& result) {
     clear_progress();
@@ -184,20 +183,15 @@ ExitCode run_many(const PathArguments& arguments, const Surface& surface, const 
     json.push_back(path_json(surface, result, arguments.options, surface_seconds, total));
     csv += path_csv(result) + "\n";
   }
-  if (arguments.json) {
+  if (arguments.delivery.json) {
     std::cout << json.dump() << "\n";
   } else {
     std::cout << csv;
   }
   const std::vector<SceneFact> facts = {{"paths", std::to_string(results.size())},
                                         {"time", fmt::format("{:.3g} s", total)}};
-  write_paths(arguments.out,
-              {.surface = surface,
-               .paths = drawn,
-               .json = json,
-               .facts = facts,
-               .title = arguments.surface.surface,
-               .up = arguments.picture.up},
+  write_paths(arguments.delivery.files,
+              {.surface = surface, .paths = drawn, .json = json, .facts = facts, .title = arguments.surface.surface},
               context);
   return all_ok ? kDone : kSomeLinesFailed;
 }
@@ -217,7 +211,8 @@ std::string surface_text(const SurfaceArguments& arguments) {
 ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const Context& context) {
   PairsRequest request{
       .file = arguments.pairs, .out = {}, .surface = surface_text(arguments.surface), .options = arguments.options};
-  if (!arguments.out.empty()) request.out = arguments.out.front();
+  const std::vector<std::string>& out = arguments.delivery.files.out;
+  if (!out.empty()) request.out = out.front();
   return answer_pairs(request, surface, context);
 }
 
@@ -254,8 +249,9 @@ ExitCode run(const PathArguments& arguments) {
   if (arguments.verify && ((!one && !in_class) || arguments.options.method != CorrectionMethod::newton)) {
     throw UsageError("--verify is for one path found by --method newton");
   }
-  check_outputs(arguments.out, OutputKind::path);
-  if (pairs && (arguments.out.size() > 1 || (arguments.out.size() == 1 && !arguments.out.front().ends_with(".csv")))) {
+  arguments.delivery.files.check(OutputKind::path);
+  const std::vector<std::string>& out = arguments.delivery.files.out;
+  if (pairs && (out.size() > 1 || (out.size() == 1 && !out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
   }
   const Timer timer;
@@ -307,12 +303,7 @@ Run add_path_command(CLI::App& app) {
   command.add_flag("--all", options.all, "look for every way round, and report each of them");
   command.add_flag("--verify", arguments->verify,
                    "follow the path as an initial-value problem, and say where it lands");
-  command.add_flag("--json", arguments->json, "the result as one JSON object on stdout");
-  command
-      .add_option("--out", arguments->out,
-                  "write to FILE, by extension (repeatable): " + known_outputs(OutputKind::path))
-      ->allow_extra_args(false);
-  arguments->picture.add_to(command);
+  arguments->delivery.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

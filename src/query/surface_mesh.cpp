@@ -20,4 +20,17 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
   return mesh;
 }
 
+Points display_cells(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
+  detail::CellLevels levels(surface, options.grid, options.cell, context);
+  levels.prepare(Points(surface.dim(), 0));
+  if (!levels.exist()) throw InvalidArgument("cells are made in up to 6 dimensions");
+  const std::shared_ptr<SurfaceCells> cells = levels.cells(0, Points(surface.dim(), 0));
+  Points centres(surface.dim(), cells->num_valid());
+  Index count = 0;
+  for (Index i = 0; i < cells->num_cells(); ++i) {
+    if (cells->valid(i)) centres.col(count++) = cells->grid().centre(i);
+  }
+  return centres;
+}
+
 }  // namespace taut
