@@ -22,6 +22,7 @@ class DirectSystem {
   using Curve = NodalCurve<D, K>;
   using Nodes = typename Curve::Nodes;
   static constexpr int Q = Frame::Q;
+  static constexpr bool kFactors = true;                     ///< pivots tell where conjugate points are
   using Reduced = Eigen::Matrix<double, Q, Eigen::Dynamic>;  ///< tangent coordinates, q a node
   /// Degree of the fine elements where the tolerance asks for a high one.
   static int high_degree(Index q) { return q > 12 ? 4 : 8; }
@@ -166,7 +167,7 @@ class DirectSystem {
   }
 
   /// Parameter of the first conjugate point after factor(curve, true, false) counted negative directions.
-  std::optional<double> conjugate_point(Evaluator& /*evaluator*/, const Curve& curve, bool regular_ends) {
+  std::optional<double> conjugate_point(const Curve& curve, bool regular_ends) {
     const Index failing = chain_.first_failing();
     if (failing < 0 || !regular_ends) return std::nullopt;
     chain_.start();

@@ -255,9 +255,4 @@ void KrylovSystem::bends(const Curve& curve, Evaluator& evaluator, const Nodes& 
   result = step.cwiseProduct(scaled_).colwise().sum().cwiseAbs().transpose();
 }
 
-std::optional<double> KrylovSystem::conjugate_point(Evaluator& /*evaluator*/, const Curve& /*curve*/,
-                                                    bool /*regular_ends*/) {
-  return std::nullopt;
-}
-
 }  // namespace taut::detail

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 
 #include "curve/banded_cholesky.hpp"
 #include "curve/nodal_curve.hpp"
@@ -27,6 +26,7 @@ class KrylovSystem {
   using Frame = NormalFrame;
   using Curve = NodalCurve<Eigen::Dynamic, Eigen::Dynamic>;
   using Nodes = Points;
+  static constexpr bool kFactors = false;
   static int high_degree(Index /*q*/) { return 8; }
 
   KrylovSystem(Index dim, Index codim);
@@ -53,7 +53,6 @@ class KrylovSystem {
   [[nodiscard]] bool resolved() const { return resolved_; }
 
   void bends(const Curve& curve, Evaluator& evaluator, const Nodes& step, Eigen::VectorXd& result);
-  std::optional<double> conjugate_point(Evaluator& evaluator, const Curve& curve, bool regular_ends);
 
  private:
   /// What Lanczos' method found at the lower end of the spectrum of P G A.

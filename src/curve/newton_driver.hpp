@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "curve/curve_check.hpp"
 #include "curve/newton_backend.hpp"
 #include "curve/newton_kernel.hpp"
 #include "curve/polyline.hpp"
+#include "taut/core/error.hpp"
+#include "taut/curve/exponential_map.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {
@@ -349,13 +352,27 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
     result.index = kernel_.num_negative();
     result.locally_shortest = outcome == Relaxation::converged && kernel_.resolved() && kernel_.minimum();
-    if (result.index > 0) {
-      if (const auto t = kernel_.conjugate_point(*evaluator_)) {
-        result.conjugate_at = *t * (check_.length / kernel_.period());
-      }
-    }
+    if (result.index > 0) result.conjugate_at = conjugate_at(result);
     const bool in_domain = sample(start, result);
     decide(outcome, in_domain, result);
+  }
+
+  // Arc length of the first conjugate point of a geodesic that is no minimum.
+  [[nodiscard]] std::optional<double> conjugate_at(const NewtonResult& result) {
+    if constexpr (System::kFactors) {
+      const auto t = kernel_.conjugate_point();
+      return t ? std::optional(*t * (check_.length / kernel_.period())) : std::nullopt;
+    } else {  // the same geodesic as a ray, with its Jacobi fields
+      const ExponentialOptions options{.tolerance = 1e-12, .points = false};
+      if (surface_.dim() - surface_.codim() - 1 > options.max_fields) return std::nullopt;
+      try {
+        return exponential_map(surface_, kernel_.nodes().col(0), result.start_direction, check_.length, options,
+                               *context_)
+            .conjugate_at;
+      } catch (const SingularPoint&) {
+        return std::nullopt;
+      }
+    }
   }
 
   // What the end points' own rounding does to the length, and ours: no tolerance asks for less.

@@ -110,9 +110,7 @@ class NewtonKernel {
   [[nodiscard]] double ends_off() const { return ends_off_; }
   /// Parameter of the first conjugate point, for a curve with negative directions. None when an end is a singular
   /// point of the surface.
-  std::optional<double> conjugate_point(Evaluator& evaluator) {
-    return system_.conjugate_point(evaluator, curve_, regular_ends_);
-  }
+  std::optional<double> conjugate_point() { return system_.conjugate_point(curve_, regular_ends_); }
 
   /// Moves the nodes to a geodesic.
   Relaxation relax(Evaluator& evaluator, const RelaxationGoal& goal, const Context& context) {
