@@ -1,13 +1,16 @@
 // Fitting and evaluating RBF surfaces. The opponents' figures, measured on one core with 1,000 samples and 3,000
 // centres: SciPy's RBFInterpolator 4.6 s and 22 microseconds a value, ALGLIB 9.5 s and 120. Each run reports how far
-// off the ellipsoid the zero set lies; the general solver of Eigen on the same matrix is the opponent in the run.
+// off the ellipsoid the zero set lies; the general solver of Eigen on the same matrix is the opponent in the run. And
+// paths on a small one.
 
 #include <benchmark/benchmark.h>
 
 #include <Eigen/LU>
+#include <cmath>
 #include <memory>
 
 #include "support/clouds.hpp"
+#include "taut/query/path.hpp"
 #include "taut/surface/rbf.hpp"
 
 namespace taut {
@@ -71,6 +74,26 @@ void evaluate(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * n);
 }
+/// The setting of the paper's table (290 to 311 cells; one source to several ends took 52 to 59 s), 300 centres.
+/// Everything a path takes once the cells are there, 20 random pairs of samples in turn. Argument: -log10 tolerance.
+void paths_in_the_papers_setting(benchmark::State& state) {
+  constexpr Index kSamples = 150;
+  const PointCloud cloud = test::ellipsoid_cloud(kAxes, kSamples);
+  const Surface surface = make_surface(std::make_shared<RbfModel>(fit(kSamples, false)));
+  PathSolver solver(surface, {.cell = 0.2, .tolerance = std::pow(10.0, -static_cast<double>(state.range(0)))},
+                    {.threads = 1});
+  Index pair = 0;
+  const auto next = [&] {
+    pair = (pair + 1) % 20;
+    return solver.solve(cloud.points.col(7 * pair), cloud.points.col(149 - 3 * pair));
+  };
+  state.counters["cells"] = static_cast<double>(next().num_cells);
+  for (auto _ : state) {
+    if (next().status != Status::ok) state.SkipWithError("a path did not converge");
+  }
+}
+BENCHMARK(paths_in_the_papers_setting)->Arg(6)->Arg(9)->Arg(12)->Unit(benchmark::kMillisecond);
+
 BENCHMARK(evaluate)->Args({1000, 0})->Args({1000, 1})->Unit(benchmark::kMicrosecond);
 
 }  // namespace
