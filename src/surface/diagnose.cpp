@@ -20,6 +20,8 @@ constexpr int kDirections = 16;
 constexpr int kOtherPoints = 4;
 /// Another point of the surface is at least this far away, relative to the coordinates.
 constexpr double kElsewhere = 0.02;
+/// The coordinates say little about the size of a surface: each other point is sought this many times as far.
+constexpr double kFarther = 5;
 constexpr int kSeeds = 24;
 
 double uniform(std::mt19937_64& random) { return 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1; }
@@ -159,16 +161,24 @@ std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, con
   result.findings = find_faults(function, result.point);
   if (result.findings.empty()) return std::nullopt;
   std::mt19937_64 random(5);
-  int alike = 0;
-  int tried = 0;
-  for (int i = 0; i < kOtherPoints; ++i) {
-    Vector other = result.point + random_step(x.size(), 0.2 * size_of(result.point), random);
+  std::vector<std::vector<RankDiagnosis::Finding>> elsewhere;
+  double step = 0.2 * size_of(result.point);
+  for (int i = 0; i < kOtherPoints; ++i, step *= kFarther) {
+    Vector other = result.point + random_step(x.size(), step, random);
     if (!descend_to_surface(function, other)) continue;
     if ((other - result.point).norm() < kElsewhere * size_of(result.point)) continue;
-    ++tried;
-    if (same(find_faults(function, other), result.findings)) ++alike;
+    elsewhere.push_back(find_faults(function, other));
   }
-  result.everywhere = tried > 0 && alike == tried;
+  if (elsewhere.empty()) return result;
+  result.everywhere =
+      std::ranges::all_of(elsewhere, [&](const auto& findings) { return same(findings, result.findings); });
+  for (RankDiagnosis::Finding& finding : result.findings) {
+    const auto is_this = [&](const auto& f) { return f.equation == finding.equation && f.fault == finding.fault; };
+    const bool all_over =
+        std::ranges::all_of(elsewhere, [&](const auto& findings) { return std::ranges::any_of(findings, is_this); });
+    // An equation that crosses zero elsewhere is no square: here it has a cusp, too thin to be met on its other side.
+    if (!all_over && finding.fault != RankDiagnosis::Fault::dependent) finding.fault = RankDiagnosis::Fault::singular;
+  }
   return result;
 }
 
@@ -211,7 +221,7 @@ std::string RankDiagnosis::text() const {
       break;
     case Fault::singular:
       text += "the gradient of " + counted(alike) + " vanishes or is undefined" + where +
-              ": an apex, a node or a kink; take another point";
+              ": an apex, a cusp, a node or a kink; take another point";
       break;
   }
   const std::size_t more = findings.size() - alike.size();

@@ -102,6 +102,15 @@ TEST(DiagnoseRank, AnApexIsJustAPoint) {
   EXPECT_FALSE(found.everywhere);
 }
 
+// Inside a cusp F is negative only in a thin needle; it is no square for that.
+TEST(DiagnoseRank, ACuspIsNoSquare) {
+  for (const char* formula : {"x^2+y^2=z^3*(1-z)", "x^2+y^2=z^3"}) {
+    EXPECT_EQ(diagnose(formula, Eigen::Vector3d::Zero()).findings[0].fault, Fault::singular) << formula;
+  }
+  const RankDiagnosis lemon = diagnose("1.2*x^2+1.2*z^2=5*(y+0.5)^3*(0.5-y)^3", Eigen::Vector3d(0, 0.5, 0));
+  EXPECT_EQ(lemon.findings[0].fault, Fault::singular);
+}
+
 TEST(DiagnoseRank, RefusesBadPoints) {
   const Surface sphere = parse_surface("x^2+y^2+z^2=1");
   EXPECT_THROW((void)diagnose_rank(sphere.function(), Vector::Zero(2)), InvalidArgument);
