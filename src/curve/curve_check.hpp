@@ -24,14 +24,19 @@ struct CurveCheck {
   double length_error = 0;  ///< model units
   double off_surface = 0;   ///< max |J^+ F|
   double geodesic_curvature = 0;
-  double curvature = 0;         ///< sup |x''|: to judge the residual by
-  double corner = 0;            ///< largest jump of the unit tangent from element to element: a crease, once converged
-  double turning = 0;           ///< int |k_g| ds and the jumps: how much the curve bends within the surface, radians
-  bool regular = true;          ///< J has full rank, F is finite at every check point
-  double weakest_gradient = 0;  ///< min over max of the smallest |grad F| along the curve
+  double curvature = 0;  ///< sup |x''|: to judge the residual by
+  double corner = 0;     ///< largest jump of the unit tangent from element to element: a crease, once converged
+  double turning = 0;    ///< int |k_g| ds and the jumps: how much the curve bends within the surface, radians
+  bool regular = true;   ///< J has full rank, F is finite at every check point
+  /// Least over largest own gradient (of any equation: what of grad F_i the others before it do not span) along the
+  /// curve; nearly zero close to a singular point.
+  double weakest_gradient = 0;
   std::vector<double> element_error;   ///< length error made in each element
   std::vector<double> element_corner;  ///< largest jump at the ends of each element
   std::vector<double> element_off;     ///< max |J^+ F| in each element
+  /// Elements in which an own gradient dips so sharply that the check points do not show how deep: a singular point is
+  /// near, at less than their distance. Geodesics may pass it without a bend (a double cone holds straight lines).
+  std::vector<bool> element_dips;
 };
 
 template <class Frame>
@@ -67,6 +72,7 @@ class CurveChecker {
     seconds_.resize(d_, m * checks);
     value_.resize(k_, m * checks);
     jacobian_.resize(d_ * k_, m * checks);
+    own_gradient_.setZero(k_, m * checks);
     for (Index e = 0; e < m; ++e) {
       const double scale = 2 / kernel.lengths()[static_cast<std::size_t>(e)];
       local_ = x.middleCols(e * kernel.degree(), n).colwise() - x.col(e * kernel.degree());
@@ -98,11 +104,10 @@ class CurveChecker {
     const Index m = kernel.num_elements();
     check.element_error.assign(static_cast<std::size_t>(m), 0.0);
     check.element_off.assign(static_cast<std::size_t>(m), 0.0);
+    check.element_dips.assign(static_cast<std::size_t>(m), false);
     check.regular = true;
     check.element_corner.assign(static_cast<std::size_t>(m), 0.0);
     check.off_surface = check.geodesic_curvature = check.curvature = check.corner = check.turning = 0;
-    double weakest = std::numeric_limits<double>::infinity();
-    double strongest = 0;
     double energy = 0;
     double correction = 0;  // int mu F
     double remainder = 0;   // of the energy, quadratic in the error
@@ -131,13 +136,11 @@ class CurveChecker {
         first_ = firsts_.col(j);
         second_ = seconds_.col(j);
         energy += weight * first_.squaredNorm() / 2;
-        const double gradient = gradients.colwise().norm().minCoeff();
         if (!value_.col(j).allFinite() || !frame_.compute(gradients)) {
           check.regular = false;
           continue;
         }
-        weakest = std::min(weakest, gradient);
-        strongest = std::max(strongest, gradient);
+        for (Index i = 0; i < k_; ++i) own_gradient_(i, j) = frame_.own_gradient(i);
         frame_.pseudo_inverse(value_.col(j), scratch_, step_);  // J^+ F
         off = std::max(off, step_.norm());
         const double mu_f = weight * second_.dot(step_);
@@ -163,7 +166,44 @@ class CurveChecker {
     const double to_length = speed > 0 ? 1 / speed : 1;  // dL = dE / speed
     for (double& error : check.element_error) error *= to_length;
     check.length_error = to_length * (remainder + std::abs(correction));
-    check.weakest_gradient = strongest > 0 ? weakest / strongest : 0;
+    find_dips(kernel, check);
+  }
+
+  /// Weakest gradient, and where it may fall to zero between check points: where the lines through two of them on
+  /// either side meet far below what was seen. For |s| they meet at 0, for a dip that is resolved near its bottom.
+  template <class Kernel>
+  void find_dips(const Kernel& kernel, CurveCheck& check) {
+    constexpr double kWeak = 0.05;
+    constexpr double kBelow = 0.3;
+    const int checks = kernel.element().num_checks();
+    place_.resize(own_gradient_.cols());
+    double left = 0;
+    for (Index e = 0; e < kernel.num_elements(); ++e) {
+      const double h = kernel.lengths()[static_cast<std::size_t>(e)];
+      for (int g = 0; g < checks; ++g) place_(e * checks + g) = left + h * (1 + kernel.element().check_node(g)) / 2;
+      left += h;
+    }
+    check.weakest_gradient = 1;
+    for (Index i = 0; i < k_; ++i) {
+      const auto own = own_gradient_.row(i);
+      const double strongest = own.maxCoeff();
+      if (!(strongest > 0)) {
+        check.weakest_gradient = 0;
+        return;
+      }
+      check.weakest_gradient = std::min(check.weakest_gradient, own.minCoeff() / strongest);
+      for (Index j = 1; j + 2 < own.size(); ++j) {
+        const double less = std::min(own(j), own(j + 1));
+        if (less > kWeak * strongest) continue;
+        const double falls = (own(j - 1) - own(j)) / (place_(j) - place_(j - 1));
+        const double rises = (own(j + 2) - own(j + 1)) / (place_(j + 2) - place_(j + 1));
+        if (!(falls > 0 && rises > 0)) continue;
+        const double gap = place_(j + 1) - place_(j);
+        const double bottom = (own(j) * rises + own(j + 1) * falls - gap * falls * rises) / (falls + rises);
+        if (bottom >= kBelow * less) continue;
+        for (const Index near : {j, j + 1}) check.element_dips[static_cast<std::size_t>(near / checks)] = true;
+      }
+    }
   }
 
   Index d_;
@@ -174,6 +214,8 @@ class CurveChecker {
   Eigen::Matrix<double, D, Eigen::Dynamic> local_, points_, firsts_, seconds_, jump_;
   Eigen::Matrix<double, K, Eigen::Dynamic> value_;
   Eigen::MatrixXd jacobian_;
+  Eigen::MatrixXd own_gradient_;  // k x check points
+  Eigen::VectorXd place_;         // parameter of the check points
   Index evaluated_ = 0;
 };
 

@@ -21,7 +21,7 @@ void check(const NewtonOptions& options) {
 }
 
 // From here on tangent coordinates cost more to eliminate than products with the Hessian; measured (docs/newton.md).
-constexpr Index kManyTangents = 9;
+constexpr Index kManyTangents = 12;
 
 // Sizes that are worth a kernel of their own; the rest shares one with sizes at run time.
 std::unique_ptr<NewtonSolver::Backend> make_backend(const Surface& surface, const NewtonOptions& options) {

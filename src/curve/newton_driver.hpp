@@ -67,6 +67,8 @@ class NewtonDriver : public NewtonSolver::Backend {
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
   static constexpr int kMaxCycles = 14;
+  static constexpr double kShortestDip = 1e-5;   // of the whole: how closely a near singular point is looked at...
+  static constexpr double kDipTolerance = 1e-5;  // ... when asked for no less than this
 
   NewtonResult of_a_point(const PointsIn& start) const {
     NewtonResult result;
@@ -256,7 +258,8 @@ class NewtonDriver : public NewtonSolver::Backend {
       if (outcome == Relaxation::converged && accurate(error) && kernel_.resolved()) break;
       if (outcome == Relaxation::stalled && (++stalls > 2 || kernel_.num_iterations() >= options_.max_iterations))
         break;
-      if (error > 0.1 * before) {
+      const bool precise = error <= 0.5 * options_.tolerance * check_.length;
+      if (error > 0.1 * before && !precise) {
         nonsmooth_ = true;
         if (error > 0.9 * before && ++slow >= 4) break;
       }
@@ -266,8 +269,14 @@ class NewtonDriver : public NewtonSolver::Backend {
     return outcome;
   }
 
+  /// Does the curve pass a singular point closer than the mesh can show.
+  [[nodiscard]] bool dips() const { return std::ranges::find(check_.element_dips, true) != check_.element_dips.end(); }
+
+  [[nodiscard]] bool looks_closely() const { return options_.tolerance <= kDipTolerance; }
+
   [[nodiscard]] bool accurate(double error) const {
-    return error <= 0.5 * options_.tolerance * check_.length && check_.corner <= CurveChecker<Frame>::kCorner &&
+    return !(dips() && looks_closely()) && error <= 0.5 * options_.tolerance * check_.length &&
+           check_.corner <= CurveChecker<Frame>::kCorner &&
            check_.off_surface <= surface_tolerance() * check_.length + 1e-15 * scale_;
   }
 
@@ -287,6 +296,8 @@ class NewtonDriver : public NewtonSolver::Backend {
       const double wanted = std::max(by_error, by_off);
       if (wanted > 1) pieces_[e] = static_cast<int>(std::clamp(std::ceil(wanted), 2.0, 4.0));
       if (check_.element_corner[e] > CurveChecker<Frame>::kCorner) pieces_[e] = std::max(pieces_[e], 2);
+      const bool dips_here = check_.element_dips[e] && looks_closely();
+      if (dips_here && lengths_[e] > kShortestDip * kernel_.period()) pieces_[e] = 4;
       if (lengths_[e] < 1e-7 * kernel_.period()) pieces_[e] = 1;
       any = any || pieces_[e] > 1;
       total += pieces_[e];
@@ -393,6 +404,9 @@ class NewtonDriver : public NewtonSolver::Backend {
     if (outcome == Relaxation::singular || !check_.regular || !finite) {
       result.status = Status::rank_deficient;
       result.reason = "the curve runs into a point where the Jacobian of F loses rank";
+    } else if ((outcome == Relaxation::converged || outcome == Relaxation::saddle) && dips()) {
+      result.status = Status::rank_deficient;
+      result.reason = "the curve runs through, or too close to tell by, a singular point of the surface";
     } else if (outcome == Relaxation::off_surface) {
       result.reason = "the start path does not project onto the surface";
     } else if (outcome == Relaxation::saddle) {

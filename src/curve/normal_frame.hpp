@@ -32,6 +32,8 @@ class NormalFrame {
 
   [[nodiscard]] const Eigen::MatrixXd& normals() const { return normals_; }  ///< d x k
   [[nodiscard]] auto first_normal() const { return normals_.col(0); }        ///< grad F_1 / |grad F_1|
+  /// What of |grad F_i| the gradients before it do not span: zero where J loses rank.
+  [[nodiscard]] double own_gradient(Eigen::Index i) const { return upper_(i, i); }
 
   /// J^+ value: the shortest step along which the linearised F changes by `value`.
   template <class Value>

@@ -66,6 +66,9 @@ class TangentFrame {
   /// grad F_1 / |grad F_1|.
   [[nodiscard]] auto first_normal() const { return (upper_(0, 0) < 0 ? -1.0 : 1.0) * full_.col(0); }
 
+  /// What of |grad F_i| the gradients before it do not span: zero where J loses rank.
+  [[nodiscard]] double own_gradient(Eigen::Index i) const { return std::abs(upper_(i, i)); }
+
   /// J^+ value: the shortest step along which the linearised F changes by `value`.
   template <class Value>
   void pseudo_inverse(const Eigen::MatrixBase<Value>& value, VectorK& scratch, Eigen::Ref<VectorD> step) const {

@@ -1,15 +1,19 @@
 #include "query/corrector.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "curve/normal_frame.hpp"
 #include "curve/polyline.hpp"
 #include "query/candidates.hpp"
+#include "query/shortening.hpp"
 #include "query/stopwatch.hpp"
+#include "taut/core/error.hpp"
 #include "taut/curve/flow.hpp"
 
 namespace taut::detail {
@@ -25,10 +29,45 @@ constexpr double kMarchErrorFactor = 3;
 constexpr double kDoubt = 0.03;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
+/// A start from which Newton's method fails is shortened first, in so many segments, the points no farther from the
+/// surface than this part of its length.
+constexpr double kGentleSegments = 96;
+constexpr double kGentleOff = 0.1;
+/// Points of more coordinates are not printed.
+constexpr Index kMostPrinted = 16;
 constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
 
 PathCandidate candidate_of(const Geodesic& geodesic) {
   return {geodesic.length, geodesic.length_error, geodesic.locally_shortest, geodesic.points};
+}
+
+/// A geodesic, be it one through a singular point.
+bool is_geodesic(const Geodesic& geodesic) {
+  constexpr double kFar = 1e-2;
+  return geodesic.status == Status::ok ||
+         (geodesic.status == Status::rank_deficient && geodesic.length_error <= kFar * geodesic.length);
+}
+
+/// The point of a curve (d x m) at which the gradients are weakest or nearest to depending on each other, measured
+/// against the rest of the curve: where a singular point is close.
+Vector weakest_point(const Surface& surface, const Points& curve) {
+  const Index n = curve.cols();
+  const Index d = surface.dim();
+  const Index k = surface.codim();
+  Eigen::MatrixXd value(k, n);
+  Eigen::MatrixXd jacobian(d * k, n);
+  surface.make_evaluator()->evaluate({.n = n, .x = curve.data(), .value = value.data(), .jacobian = jacobian.data()});
+  Eigen::MatrixXd own = Eigen::MatrixXd::Zero(k, n);
+  NormalFrame frame;
+  frame.resize(d, k);
+  for (Index j = 0; j < n; ++j) {
+    if (!frame.compute(Eigen::Map<const Eigen::MatrixXd>(jacobian.col(j).data(), d, k))) return curve.col(j);
+    for (Index i = 0; i < k; ++i) own(i, j) = frame.own_gradient(i);
+  }
+  const Vector strongest = own.rowwise().maxCoeff();
+  Index weakest = 0;
+  (strongest.cwiseInverse().asDiagonal() * own).colwise().minCoeff().minCoeff(&weakest);
+  return curve.col(weakest);
 }
 
 /// Of starts shortest first, how far down the list it is worth going.
@@ -50,6 +89,28 @@ class Hope {
 Corrector::Corrector(const Surface& surface, const PathOptions& options, const Context& context)
     : surface_(surface), options_(options), context_(context) {}
 
+/// Newton's method from the start once it has been brought to rest in small steps that keep to their sheet. None where
+/// that leads to no geodesic either.
+std::optional<NewtonResult> Corrector::correct_gently(const Points& start) {
+  if (!maker_) maker_.emplace(surface_);
+  const double length = polyline_length(start);
+  const double gap = length / kGentleSegments;
+  Strand strand;
+  try {
+    strand = maker_->make(start, false, gap, kGentleOff * length);
+  } catch (const InvalidArgument&) {
+    return std::nullopt;  // too coarse to tell which way round it goes
+  }
+  Shortening shortening(*maker_, std::move(strand), gap);
+  for (const double settled : {0.1, 1e-3}) {
+    const Shortening::Outcome outcome = shortening.run(settled * gap, context_);
+    NewtonResult geodesic = newton_->solve(shortening.strand().polyline(), context_);
+    if (is_geodesic(geodesic)) return geodesic;
+    if (outcome == Shortening::Outcome::stuck) break;
+  }
+  return std::nullopt;
+}
+
 Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
   Corrected corrected{{}, {}, start};
   Geodesic& geodesic = corrected.geodesic;
@@ -58,6 +119,9 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
     case CorrectionMethod::newton:
       if (!newton_) newton_.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
       geodesic = newton_->solve(start, context_);
+      if (cell == 0 && !is_geodesic(geodesic)) {  // with cells, finer ones are the better help
+        if (auto gently = correct_gently(start)) geodesic = *std::move(gently);
+      }
       break;
     case CorrectionMethod::flow:
       geodesic =
@@ -71,6 +135,10 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
       break;
   }
   corrected.message = std::string(geodesic.reason);
+  if (geodesic.status == Status::rank_deficient && geodesic.points.cols() > 0) {
+    const Vector at = weakest_point(surface_, geodesic.points);
+    if (at.size() <= kMostPrinted) corrected.message += fmt::format(", near ({:.4g})", fmt::join(at, ", "));
+  }
   if (geodesic.status == Status::ok && geodesic.length > kMostGrowth * start_length) {
     geodesic.status = Status::not_converged;
     corrected.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
@@ -90,7 +158,7 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
   for (const StartPath& start : starts) {
     if (hope.is_lost(start)) break;
     const NewtonResult geodesic = rough_->solve(start.points, context_);
-    if (geodesic.status != Status::ok) {
+    if (!is_geodesic(geodesic)) {
       found.push_back(start);
       continue;
     }
@@ -138,10 +206,14 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
 }
 
 bool is_better(const Geodesic& a, const Geodesic& b) {
-  const bool a_ok = a.status == Status::ok;
-  const bool b_ok = b.status == Status::ok;
-  if (a_ok != b_ok) return a_ok;
-  return a_ok ? a.length < b.length : a.length_error < b.length_error;
+  const bool a_there = is_geodesic(a);
+  const bool b_there = is_geodesic(b);
+  if (a_there != b_there) return a_there;
+  if (!a_there) return a.length_error < b.length_error;
+  // Of the same length within their errors: rather the one that is certain.
+  const bool as_long = std::abs(a.length - b.length) <= a.length_error + b.length_error;
+  if (as_long && a.status != b.status) return a.status == Status::ok;
+  return a.length < b.length;
 }
 
 }  // namespace taut::detail

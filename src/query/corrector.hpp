@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "query/start_finder.hpp"
+#include "query/strand.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/query/path.hpp"
 
@@ -27,6 +28,7 @@ class Corrector {
     Points start;
   };
 
+  [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start);
   [[nodiscard]] Corrected shorten(const Points& start, double cell);
   [[nodiscard]] std::vector<StartPath> contenders(const std::vector<StartPath>& starts);
 
@@ -35,9 +37,11 @@ class Corrector {
   const Context& context_;
   std::optional<NewtonSolver> rough_;
   std::optional<NewtonSolver> newton_;
+  std::optional<StrandMaker> maker_;
 };
 
-/// A converged geodesic before any other, then the shorter one; of those not converged the one that came nearer.
+/// A geodesic before a curve that is none, then the shorter one, be it through a singular point (rank_deficient): the
+/// longer one would be no answer; of curves that are none the one that came nearer.
 [[nodiscard]] bool is_better(const Geodesic& a, const Geodesic& b);
 
 }  // namespace taut::detail

@@ -176,8 +176,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     const bool second_try = best.has_value();
     if (!best || detail::is_better(result, *best)) best = result;
     best->seconds = result.seconds;
-    // Within a cell the start is as good as it gets.
-    if (sure || second_try || (p - q).norm() < result.cell) break;
+    // Within a cell the start is as good as it gets; without cells there is no other.
+    if (sure || second_try || !levels().exist() || (p - q).norm() < result.cell) break;
   }
   if (!best) {
     explain_no_way(result, barrier);

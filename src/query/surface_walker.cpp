@@ -1,5 +1,6 @@
 #include "query/surface_walker.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,6 +15,11 @@ constexpr double kLeastProgress = 0.02;
 /// The last steps halve the distance, down to this part of a step; then the target must lie along the tangent space.
 constexpr double kArrived = 1.0 / 16;
 constexpr double kInSight = 0.8;
+/// Squared sines of the angles between the tangent spaces at both ends of a step, together; steps over which they turn
+/// by more, or the normals are mirrored (on the other side of a singular point), are halved, down to this part of a
+/// step.
+constexpr double kMostTurn = 0.35;
+constexpr double kShortestStep = 1.0 / 64;
 /// A walk between two points may be this many times longer than the straight line.
 constexpr Index kMostDetour = 20;
 
@@ -41,6 +47,14 @@ Vector SurfaceWalker::tangent_part(const Foothold& at, Vector r) const {
   return r;
 }
 
+bool SurfaceWalker::turns(const Foothold& a, const Foothold& b) const {
+  const Eigen::Map<const Eigen::MatrixXd> na(a.normals.data(), d_, k_);
+  const Eigen::Map<const Eigen::MatrixXd> nb(b.normals.data(), d_, k_);
+  const Eigen::MatrixXd overlap = na.transpose() * nb;
+  const double sines = static_cast<double>(k_) - overlap.squaredNorm();
+  return !(sines <= kMostTurn && overlap.determinant() > 0);
+}
+
 bool SurfaceWalker::walk(const Foothold& from, const Vector& target, Index most, std::vector<Foothold>& steps) {
   Foothold here = from;
   for (Index i = 0; i < most; ++i) {
@@ -49,9 +63,14 @@ bool SurfaceWalker::walk(const Foothold& from, const Vector& target, Index most,
     const Vector t = tangent_part(here, r);
     if (left <= kArrived * step_) return t.norm() >= kInSight * left;
     if (t.norm() < kLeastProgress * left) return false;
-    const double step = left > 2 * step_ ? step_ : std::max(left / 2, 0.9 * kArrived * step_);
+    double step = left > 2 * step_ ? step_ : std::max(left / 2, 0.9 * kArrived * step_);
+    const double shortest = std::min(step, kShortestStep * step_);
     Foothold next;
-    if (!stand(here.point + step * t.normalized(), step, next)) return false;
+    // Where the surface turns too much over a step, as beside a singular point, it may have led to another sheet.
+    while (!stand(here.point + step * t.normalized(), step, next) || turns(here, next)) {
+      step /= 2;
+      if (step < shortest) return false;
+    }
     if ((target - next.point).norm() > left - kLeastProgress * step) return false;
     here = next;
     steps.push_back(std::move(next));

@@ -38,6 +38,7 @@ class SurfaceWalker {
   [[nodiscard]] Points walk(const Vector& p, const Vector& q);
 
  private:
+  [[nodiscard]] bool turns(const Foothold& a, const Foothold& b) const;
   [[nodiscard]] Vector tangent_part(const Foothold& at, Vector r) const;
 
   Index d_;

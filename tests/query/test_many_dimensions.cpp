@@ -11,6 +11,7 @@
 
 #include "taut/query/path.hpp"
 #include "taut/surface/formula.hpp"
+#include "taut/surface/projection.hpp"
 
 namespace taut {
 namespace {
@@ -89,11 +90,52 @@ TEST(ManyDimensions, AntipodesOfASphere) {
 }
 
 TEST(ManyDimensions, AKinematicChainTurnsRound) {
-  const Vector start{{1, 0, 0, 2, 0, 0, 2, -1, 0, 3, -1, 0, 3, 0, 0}};
-  const PathResult path = shortest_path(chain(), start, -start);
-  ASSERT_EQ(path.status, Status::ok) << path.message;
-  EXPECT_LE(path.length_error, 1e-9 * path.length);
-  EXPECT_GT(path.length, 2 * start.norm());
+  const Vector pose{{1, 0, 0, 2, 0, 0, 2, -1, 0, 3, -1, 0, 3, 0, 0}};
+  PathSolver solver(chain());
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  for (const double spread : {1e-4, 1e-3, 1e-2, 0.1}) {
+    Vector p = pose;
+    Vector q = -pose;
+    for (double& x : p) x += spread * normal(random);
+    for (double& x : q) x += spread * normal(random);
+    const PathResult path = solver.solve(p, q);
+    ASSERT_EQ(path.status, Status::ok) << path.message << " at " << spread;
+    EXPECT_TRUE(path.locally_shortest) << spread;
+    EXPECT_LE(path.length_error, 1e-9 * path.length) << spread;
+    EXPECT_NEAR(path.length, 14.173, 5 * spread) << spread;
+  }
+}
+
+// Half a turn about the z axis takes this pose to its mirror image, so that the middle of a shortest way, by symmetry,
+// has all links along that axis, and with its end at 3 one of them turned back: the equations depend on each other
+// there.
+TEST(ManyDimensions, AWayThroughASingularPoseIsSaidToBeOne) {
+  const Vector pose{{1, 0, 0, 2, 0, 0, 2, -1, 0, 3, -1, 0, 3, 0, 0}};
+  const PathResult path = shortest_path(chain(), pose, -pose);
+  EXPECT_EQ(path.status, Status::rank_deficient);
+  EXPECT_FALSE(path.locally_shortest);
+  EXPECT_NE(path.message.find("singular point"), std::string::npos) << path.message;
+  EXPECT_NEAR(path.length, 14.172985754, 1e-8);  // of perturbed poses, to where they meet
+}
+
+// Walks towards the far end used to step over singular poses onto other sheets, from where no correction began.
+TEST(ManyDimensions, ChainsTurnBetweenRandomPoses) {
+  const Surface surface = chain();
+  PathSolver solver(surface);
+  const auto evaluator = surface.make_evaluator();
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 12; ++i) {
+    Points ends(15, 2);
+    for (double& x : ends.reshaped()) x = normal(random);
+    if (i % 2 == 1) ends.col(1) = -ends.col(0);
+    ASSERT_TRUE(project_to_surface(*evaluator, 15, surface.codim(), ends).all());
+    const PathResult path = solver.solve(ends.col(0), ends.col(1));
+    EXPECT_EQ(path.status, Status::ok) << path.message << " in pair " << i;
+    EXPECT_TRUE(path.locally_shortest) << i;
+    EXPECT_LE(path.length_error, 1e-9 * path.length) << i;
+  }
 }
 
 TEST(ManyDimensions, SamplesShowTheWay) {
