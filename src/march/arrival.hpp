@@ -30,7 +30,7 @@ struct Neighbour {
 template <int D>
 struct Arrival {
   double distance;          ///< u at x
-  SmallVector<D> gradient;  ///< unit gradient of u at x, in R^d
+  SmallVector<D> gradient;  ///< unit gradient of u at x: in the frame of x where neighbours are, finally in R^d
   /// True when x lies between the rays through its neighbours, n = 1 included. False: beside all rays (at an edge of
   /// the surface, on the cut locus, or come too early), the distance is known from a single neighbour.
   bool enclosed;
@@ -43,9 +43,69 @@ inline double circular_estimate2(double distance, double along, double length2) 
   return std::max(0.0, distance * distance + 2 * distance * along + length2);
 }
 
+/// Neighbours whose gradient makes less than this cosine with the way to x lie beside or ahead of it.
+inline constexpr double kBehind = 0.3;
 /// Neighbours whose gradients differ by more than this (cosine) from the first one's belong to another branch of the
 /// distance, across the cut locus.
 inline constexpr double kMinBranchCosine = 0.5;
+
+/// The neighbour with the least estimate.
+template <int D>
+const Neighbour<D>& best_of(const std::vector<Neighbour<D>>& neighbours) {
+  return *std::min_element(neighbours.begin(), neighbours.end(),
+                           [](const auto& a, const auto& b) { return a.estimate < b.estimate; });
+}
+
+/// From a single neighbour: the best one's ray, where it passes close to x, else the shortest way over an edge.
+template <int D>
+Arrival<D> arrival_from_one(const std::vector<Neighbour<D>>& neighbours, Index surface_dim) {
+  const Neighbour<D>& first = best_of<D>(neighbours);
+  constexpr double kNearRay = 0.9;  // cosine
+  if (surface_dim > 1 && first.along > kNearRay * first.length) {
+    const SmallVector<D> ray = first.distance * first.gradient - first.position;
+    return {first.estimate, ray / ray.norm(), false, first.source};
+  }
+  const Neighbour<D>& y = *std::min_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
+    return a.distance + a.length < b.distance + b.length;
+  });
+  const SmallVector<D> direction = y.length > 0 ? SmallVector<D>(-y.position / y.length) : y.gradient;
+  return {y.distance + y.length, direction, surface_dim == 1, y.source};
+}
+
+/// n = 2. Do the rays through two neighbours, which miss x by signed distances, pass on either side of it and from
+/// behind?
+template <int D>
+bool surrounds(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right, double miss_right) {
+  const double t = miss_left / (miss_left - miss_right);
+  return miss_left > miss_right && left.along + t * (right.along - left.along) > 0;
+}
+
+/// n = 2. Fermat's principle on the segment z(t) between two neighbours: the least sqrt(2 v(t)) + |z(t)|.
+template <int D>
+Arrival<D> arrival_between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right, double miss_right) {
+  using Vec = SmallVector<D>;
+  const Vec edge = right.position - left.position;
+  const double edge2 = edge.squaredNorm();
+  const double v0 = 0.5 * left.distance * left.distance;
+  const double rise = 0.5 * right.distance * right.distance - v0;
+  const double bend = 0.5 * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
+  // The rays themselves give t to first order; two Newton steps on the distances settle the direction.
+  double t = std::clamp(miss_left / (miss_left - miss_right), 0.0, 1.0);
+  constexpr int kSteps = 2;
+  for (int step = 0;; ++step) {
+    const Vec z = left.position + t * edge;
+    const double length = z.norm();
+    const double u = std::sqrt(std::max(0.0, 2 * (v0 + t * rise + bend * t * (1 - t))));
+    const double along = length > 0 ? z.dot(edge) / length : 0.0;
+    const double curvature = length > 0 ? (edge2 - along * along) / length : 0.0;  // of |z(t)|
+    if (step == kSteps || !(curvature > 0) || !(u > 0)) {
+      return {u + length, length > 0 ? Vec(-z / length) : left.gradient, true, left.source};
+    }
+    const double slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
+    const double second = curvature - (2 * bend + slope * slope) / u;
+    t = std::clamp(t - (slope + along) / std::max(second, 0.5 * curvature), 0.0, 1.0);
+  }
+}
 
 /// Solves the eikonal equation at one surface point x from the distances and gradients at its neighbours.
 ///
@@ -95,13 +155,15 @@ class ArrivalSolver {
 
   bool unroll(const Candidate& y, Neighbour<D>& neighbour) const;
   void unroll_all();
+  /// From the frame of x to R^d.
+  [[nodiscard]] Arrival<D> lift(Arrival<D> arrival) const {
+    arrival.gradient = frame_.lift(arrival.gradient);
+    return arrival;
+  }
   void drop(std::size_t c) { candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(c)); }
   [[nodiscard]] std::size_t best_candidate() const;
-  [[nodiscard]] const Neighbour<D>& best() const;
   [[nodiscard]] Arrival<D> one_sided() const;
   [[nodiscard]] std::optional<Arrival<D>> solve_on_surface();
-  [[nodiscard]] Arrival<D> between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right,
-                                   double miss_right, Index source) const;
   [[nodiscard]] Arrival<D> solve_by_votes() const;
 
   Index d_;
@@ -153,24 +215,8 @@ std::size_t ArrivalSolver<D, K>::best_candidate() const {
 }
 
 template <int D, int K>
-const Neighbour<D>& ArrivalSolver<D, K>::best() const {
-  return *std::min_element(neighbours_.begin(), neighbours_.end(),
-                           [](const auto& a, const auto& b) { return a.estimate < b.estimate; });
-}
-
-template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::one_sided() const {
-  const Neighbour<D>& first = best();
-  constexpr double kNearRay = 0.9;  // cosine
-  if (surface_dim() > 1 && first.along > kNearRay * first.length) {
-    const Vec ray = first.distance * first.gradient - first.position;
-    return {first.estimate, frame_.lift(Vec(ray / ray.norm())), false, first.source};
-  }
-  const Neighbour<D>& y = *std::min_element(neighbours_.begin(), neighbours_.end(), [](const auto& a, const auto& b) {
-    return a.distance + a.length < b.distance + b.length;
-  });
-  const Vec direction = y.length > 0 ? Vec(-y.position / y.length) : y.gradient;
-  return {y.distance + y.length, frame_.lift(direction), surface_dim() == 1, y.source};
+  return lift(arrival_from_one<D>(neighbours_, surface_dim()));
 }
 
 template <int D, int K>
@@ -211,7 +257,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       if (gradient.dot(branch) < kMinBranchCosine) continue;
       const double miss = frame_.cross(gradient, y.chord);
       // Those beside or ahead of x only where nobody is behind.
-      constexpr double kBehind = 0.3;
+
       const double along2 = y.along * std::abs(y.along);
       if (along2 < -kBehind * kBehind * y.chord2) continue;
       const double measure = std::abs(miss) + (along2 < kBehind * kBehind * y.chord2 ? 4 * std::sqrt(y.chord2) : 0.0);
@@ -240,9 +286,10 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       };
       const double miss_left = miss(pair[0]);
       const double miss_right = miss(pair[1]);
-      const double t = miss_left / (miss_left - miss_right);
-      if (miss_left > miss_right && pair[0].along + t * (pair[1].along - pair[0].along) > 0) {
-        return between(pair[0], miss_left, pair[1], miss_right, first.source);
+      if (surrounds(pair[0], miss_left, pair[1], miss_right)) {
+        Arrival<D> arrival = arrival_between<D>(pair[0], miss_left, pair[1], miss_right);
+        arrival.source = first.source;
+        return lift(arrival);
       }
     }
     unroll_all();
@@ -251,41 +298,13 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
   return std::nullopt;
 }
 
-/// Fermat's principle on the segment z(t) between two neighbours: the least sqrt(2 v(t)) + |z(t)|.
-template <int D, int K>
-Arrival<D> ArrivalSolver<D, K>::between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right,
-                                        double miss_right, Index source) const {
-  const Vec edge = right.position - left.position;
-  const double edge2 = edge.squaredNorm();
-  const double v0 = 0.5 * left.distance * left.distance;
-  const double rise = 0.5 * right.distance * right.distance - v0;
-  const double bend = 0.5 * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
-  // The rays themselves give t to first order; two Newton steps on the distances settle the direction.
-  double t = std::clamp(miss_left / (miss_left - miss_right), 0.0, 1.0);
-  constexpr int kSteps = 2;
-  for (int step = 0;; ++step) {
-    const Vec z = left.position + t * edge;
-    const double length = z.norm();
-    const double u = std::sqrt(std::max(0.0, 2 * (v0 + t * rise + bend * t * (1 - t))));
-    const double along = length > 0 ? z.dot(edge) / length : 0.0;
-    const double curvature = length > 0 ? (edge2 - along * along) / length : 0.0;  // of |z(t)|
-    if (step == kSteps || !(curvature > 0) || !(u > 0)) {
-      const Vec direction = length > 0 ? Vec(-z / length) : left.gradient;
-      return {u + length, frame_.lift(direction), true, source};
-    }
-    const double slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
-    const double second = curvature - (2 * bend + slope * slope) / u;
-    t = std::clamp(t - (slope + along) / std::max(second, 0.5 * curvature), 0.0, 1.0);
-  }
-}
-
 /// n >= 3. For a quadratic v the trapezoidal rule v(0) = v_i - (u_i g_i + G) . z_i / 2 is exact for every neighbour i,
 /// with G = u r the gradient of v at x and, by the eikonal equation, v(0) = |G|^2 / 2. Least squares for G over all
 /// neighbours of the branch that lie behind x, by Gauss-Newton from the best single neighbour.
 template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   const Index n = surface_dim();
-  const Neighbour<D>& first = best();
+  const Neighbour<D>& first = best_of<D>(neighbours_);
   Vec gradient = first.distance * first.gradient - first.position;  // G; its length is the distance
   const double start = gradient.norm();
   if (!(start > 0)) return one_sided();

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
+#include "march/chart_march.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
 #include "march/stencil.hpp"
@@ -22,11 +24,14 @@ constexpr double kOffset = 0.7;
 /// Landmarks this close to an end, in spacings, say nothing about ways.
 constexpr double kEndSpacings = 1;
 /// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
-constexpr double kSameWaySpacings = 0.8;
-constexpr double kSameWay = 0.2;
+constexpr double kSameWaySpacings = 0.6;
+constexpr double kSameWay = 0.15;
 
 /// Two cells lie on the same side of the surface if their normals turn by less than this (cosine).
 constexpr double kSameSide = 0.5;
+
+/// Landmarks that share the memory of a march, and a cache line of the table.
+constexpr Index kLandmarksAtATime = 16;
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 
@@ -92,26 +97,46 @@ void DistanceTable::link_cells() {
 }
 
 void DistanceTable::fill(const Surface& surface, const Context& context) {
-  const std::size_t n = landmarks_.size();
   const auto d = static_cast<std::size_t>(cells_.dim());
+  const auto num_cells = static_cast<std::size_t>(cells_.num_cells());
+  std::optional<detail::SurfaceCharts> charts;
+  if (cells_.dim() - cells_.codim() == 2) charts.emplace(cells_, first_link_, links_);
   Context inner = context;
   inner.progress = nullptr;
   std::mutex progress;
   Index done = 0;
-  detail::parallel_for(context, 0, num_landmarks(), 1, [&](Index first, Index last) {
+  detail::parallel_for(context, 0, num_landmarks(), kLandmarksAtATime, [&](Index first, Index last) {
+    // What each landmark says of all cells, then a part of each cell's row at a time.
+    const auto count = static_cast<std::size_t>(last - first);
+    std::vector<float> columns(count * num_cells * (d + 1));
+    float* to = columns.data();
+    std::optional<detail::ChartMarch> chart_march;
+    if (charts) chart_march.emplace(*charts);
     for (Index l = first; l < last; ++l) {
-      const DistanceField field =
-          march(surface, cells_, cells_.point(landmarks_[static_cast<std::size_t>(l)]), {}, inner);
-      for (Index i = 0; i < cells_.num_cells(); ++i) {
-        float* entries = table_.data() + static_cast<std::size_t>(i) * n * (d + 1) + static_cast<std::size_t>(l);
-        *entries = static_cast<float>(field.distance(i));
-        for (std::size_t axis = 0; axis < d; ++axis) {
-          entries[(axis + 1) * n] = static_cast<float>(field.gradient(static_cast<Index>(axis), i));
+      const Index landmark = landmarks_[static_cast<std::size_t>(l)];
+      DistanceField field;
+      if (charts) {
+        context.check_cancelled();
+        chart_march->run(landmark);
+      } else {
+        field = march(surface, cells_, cells_.point(landmark), {}, inner);
+      }
+      for (Index i = 0; i < cells_.num_cells(); ++i, to += d + 1) {
+        to[0] = static_cast<float>(charts ? chart_march->distance(i) : field.distance(i));
+        Eigen::Map<Eigen::VectorXf> gradient(to + 1, cells_.dim());
+        if (charts) {
+          gradient.noalias() = (charts->axes(i) * chart_march->gradient(i)).cast<float>();
+        } else {
+          gradient = field.gradient.col(i).cast<float>();
         }
       }
-      const std::lock_guard lock(progress);
-      context.report("table", static_cast<double>(++done) / static_cast<double>(num_landmarks()));
     }
+    for (std::size_t i = 0; i < num_cells * (d + 1); ++i) {
+      float* row = table_.data() + i * landmarks_.size() + static_cast<std::size_t>(first);
+      for (std::size_t l = 0; l < count; ++l) row[l] = columns[l * num_cells * (d + 1) + i];
+    }
+    const std::lock_guard lock(progress);
+    context.report("table", static_cast<double>(done += last - first) / static_cast<double>(num_landmarks()));
   });
 }
 

@@ -20,17 +20,16 @@ constexpr Index kMostRivals = 16;
 constexpr Index kMostWaysRound = 64;
 
 // The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
-constexpr double kTableTurn = 1.0;   // most that the normal turns from one of its cells to the next, radians  // most
-                                     // that the normal turns from one of its cells to the next, radians
+constexpr double kTableTurn = 1.0;   // most that the normal turns from one of its cells to the next, radians
 constexpr double kRefinement = 1.4;  // the next finer size
 constexpr double kFewestCells = 400;
-constexpr double kFewestLandmarks = 200;
+constexpr double kFewestLandmarks = 210;
 constexpr double kLandmarksPerTurn2 = 0.08;
 // How wrong it is, is measured on a few ways.
 constexpr Index kCalibrationWays = 24;
 constexpr double kCalibrationTolerance = 1e-3;
 constexpr double kSafety = 2;
-constexpr double kLeastTableError = 0.01;
+constexpr double kLeastTableError = 0.02;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
 

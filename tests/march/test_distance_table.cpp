@@ -6,6 +6,8 @@
 #include "support.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
+#include "taut/march/march.hpp"
+#include "taut/surface/formula.hpp"
 
 namespace taut {
 namespace {
@@ -44,6 +46,30 @@ TEST(DistanceTable, StartsAreAsLongAsTheDistanceOnTheSphere) {
     }
   }
   EXPECT_GT(answered, 100);
+}
+
+TEST(DistanceTable, DistancesAreThoseOfMarches) {
+  for (const char* formula :
+       {"x^2 + 4y^2 + 2z^2 = 1", "(x^2+y^2+z^2+0.84)^2 = 4(x^2+y^2)", "x^2+y^2 = 0.5; z^2+w^2 = 0.5"}) {
+    const Surface surface = parse_surface(formula);
+    const double size = surface.dim() == 3 ? 0.12 : 0.17;
+    const DistanceTable table(surface, cells_in_box(surface, size, 1.8), 120);
+    SurfaceCells cells = cells_in_box(surface, size, 1.8);
+    Index compared = 0;
+    for (const Index from : {Index{3}, table.num_landmarks() / 2}) {
+      const Vector p = table.landmark(from);
+      const DistanceField field = march(surface, cells, p);
+      for (Index l = 0; l < table.num_landmarks(); ++l) {
+        const std::vector<StartPath> paths = table.start_paths(p, table.landmark(l), {.max_paths = 1});
+        if (paths.empty()) continue;
+        const double marched = distance_at(surface, cells, field, table.landmark(l))(0);
+        // Up to the detour past a landmark.
+        EXPECT_NEAR(paths[0].length, marched, 0.04 * marched) << formula << ", landmarks " << from << " and " << l;
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 60) << formula;
+  }
 }
 
 TEST(DistanceTable, OppositePointsHaveSeveralStarts) {
