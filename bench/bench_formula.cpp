@@ -220,6 +220,28 @@ void bounds(benchmark::State& state) {
   set_rate(state, n);
 }
 
+/// Bounds of the Jacobian; skipped where those of the value are exact.
+template <class Surface>
+void slope_bounds(benchmark::State& state) {
+  const Index n = state.range(0);
+  const Points lower = sample_points(n);
+  const Points upper = lower.array() + 0.01;
+  Points low(3, n), high(3, n);
+  const auto evaluator = taut::parse_surface(Surface::formula()).make_evaluator();
+  for (auto _ : state) {
+    if (!evaluator->jacobian_bounds({.n = n,
+                                     .lower = lower.data(),
+                                     .upper = upper.data(),
+                                     .jacobian_lower = low.data(),
+                                     .jacobian_upper = high.data()})) {
+      state.SkipWithError("not needed");
+      break;
+    }
+    benchmark::ClobberMemory();
+  }
+  set_rate(state, n);
+}
+
 /// From text to a compiled Jacobian and Hessian.
 template <class Surface>
 void parse_and_compile(benchmark::State& state) {
@@ -245,6 +267,7 @@ void register_surface(const std::string& name) {
   add("hessian/hand", by_hand<Surface, kHessian>);
   add("hessian/formula", by_formula<Surface, kHessian>);
   add("bounds/formula", bounds<Surface>);
+  add("slope_bounds/formula", slope_bounds<Surface>);
   benchmark::RegisterBenchmark((name + "/compile").c_str(), parse_and_compile<Surface>);
 }
 
