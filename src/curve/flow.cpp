@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -332,7 +333,8 @@ void Correction::judge_status(const FlowState& state, FlowResult& result) {
   } else if (!state.converged) {
     result.status = Status::not_converged;
     result.reason = "the geodesic curvature did not fall below its bound";
-  } else if (ends > 1e-6 * result.length) {
+  } else if (ends >
+             1e-6 * result.length + 16 * std::numeric_limits<double>::epsilon() * result.points.cwiseAbs().maxCoeff()) {
     result.status = Status::not_converged;
     result.reason = "an end point does not lie on the surface";
   } else if (options_.spacing > 0 && result.spacing > options_.spacing * (1 + 1e-6)) {
@@ -349,24 +351,56 @@ void Correction::judge_status(const FlowState& state, FlowResult& result) {
   }
 }
 
+/// The chord, where the flow would only stir up rounding: ends within kNear of the coordinates' size, the surface
+/// between them as good as flat, and a start that goes from one to the other without a detour (any start, where the
+/// ends are equal to rounding). None otherwise.
+std::optional<FlowResult> chord_of_near_ends(const Surface& surface, const PointsIn& start) {
+  constexpr double kNear = 1e-7;
+  constexpr double kFlat = 1e-4;   // turn of the normal from end to end, radians: 1e-9 of the length
+  constexpr double kDetour = 1.5;  // length of the start over the chord
+  constexpr double kEqual = 64 * std::numeric_limits<double>::epsilon();
+  const double scale = start.cwiseAbs().maxCoeff();
+  Points ends(start.rows(), 2);
+  ends << start.col(0), start.rightCols<1>();
+  const double chord = (ends.col(1) - ends.col(0)).norm();
+  if (chord > kNear * scale) return std::nullopt;
+  const bool equal = chord <= kEqual * scale;
+  if (!equal && detail::polyline_length(start) > kDetour * chord) return std::nullopt;
+  FlowNodes nodes(surface.dim(), surface.codim());
+  const auto evaluator = surface.make_evaluator();
+  nodes.evaluate(*evaluator, ends);
+  double turn = 0;  // at most
+  if (!equal) {
+    const Eigen::MatrixXd overlap = nodes.normals(0).transpose() * nodes.normals(1);
+    turn = (nodes.normals(1) - nodes.normals(0) * overlap).norm();
+    if (!(turn <= kFlat) || !(overlap.determinant() > 0)) return std::nullopt;
+  }
+  FlowResult result;
+  result.points = ends;
+  result.length = result.spacing = chord;
+  result.length_error = chord * turn * turn / 24 + (chord > 0 ? std::numeric_limits<double>::epsilon() * scale : 0);
+  result.model_error = result.model_error_uniform = chord * turn * turn / 24;
+  result.residual.surface = nodes.correction().colwise().norm().maxCoeff();
+  result.locally_shortest = true;
+  result.status = Status::ok;
+  if (result.residual.surface > 1e-6 * chord + kEqual * scale && !equal) {
+    result.status = Status::not_converged;
+    result.locally_shortest = false;
+    result.reason = "an end point does not lie on the surface";
+  } else if (!surface.inside_domain(ends, 1e-6 * chord + kEqual * scale).all()) {
+    result.status = Status::left_domain;
+    result.reason = "the curve leaves the surface's domain";
+  }
+  return result;
+}
+
 }  // namespace
 
 FlowResult correct_flow(const Surface& surface, const PointsIn& start, const FlowOptions& options,
                         const Context& context) {
   validate(surface, start, options);
   context.check_cancelled();
-  const Index last = start.cols() - 1;
-  if (start.col(0) == start.col(last)) {
-    FlowResult result;
-    result.points = start.col(0).replicate(1, 2);
-    FlowNodes nodes(surface.dim(), surface.codim());
-    const auto evaluator = surface.make_evaluator();
-    nodes.evaluate(*evaluator, result.points);
-    result.residual.surface = nodes.correction().col(0).norm();
-    result.status = Status::ok;
-    result.locally_shortest = true;
-    return result;
-  }
+  if (std::optional<FlowResult> chord = chord_of_near_ends(surface, start)) return *std::move(chord);
   return Correction(surface, options, context).run(start);
 }
 

@@ -210,6 +210,37 @@ TEST(Flow, CloseEnds) {
   EXPECT_NEAR(result.length, angle, 1e-4 * angle);
 }
 
+// Ends 1e-13 apart kept the flow stirring rounding for minutes (2026-11), and from 1e-10 on an end "did not lie on the
+// surface" by its own rounding.
+TEST(Flow, EndsCloserThanItsNodesCouldBeAreJoinedByTheirChord) {
+  const Surface surface = ellipsoid(2, 1, 0.5);
+  for (double apart = 1e-2; apart > 1e-17; apart /= 10) {
+    Points ends(3, 2);
+    ends.col(0) = Eigen::Vector3d(2 * std::cos(0.3), std::sin(0.3), 0);
+    ends.col(1) = Eigen::Vector3d(2 * std::cos(0.3 + apart), std::sin(0.3 + apart), 0);
+    const double chord = (ends.col(1) - ends.col(0)).norm();
+    const FlowResult result = correct_flow(surface, ends, {.max_steps = 200});
+    EXPECT_EQ(result.status, Status::ok) << result.reason << " at " << apart;
+    EXPECT_TRUE(result.locally_shortest) << apart;
+    EXPECT_GE(result.length, chord * (1 - 1e-12));
+    EXPECT_NEAR(result.length, chord, 4 * apart * apart * chord + 1e-15) << apart;
+    EXPECT_EQ(result.points.col(0), ends.col(0));
+    EXPECT_EQ(result.points.rightCols<1>(), ends.col(1));
+  }
+}
+
+// Round the equator and back to within rounding of where it began.
+TEST(Flow, ALoopBackToItsStartGivesThatPoint) {
+  Points loop(3, 65);
+  for (Index i = 0; i <= 64; ++i) {
+    const double angle = 2 * kPi * static_cast<double>(i) / 64;
+    loop.col(i) = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+  }
+  const FlowResult result = correct_flow(unit_sphere(), loop);
+  EXPECT_EQ(result.status, Status::ok) << result.reason;
+  EXPECT_LE(result.length, 1e-15);
+}
+
 TEST(Flow, IdenticalEndsGiveThatPoint) {
   const Eigen::Vector3d p(0, 0, 1);
   const FlowResult result = correct_flow(unit_sphere(), noisy_chord(p, p, 4, 0.0, 14));
