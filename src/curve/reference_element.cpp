@@ -123,6 +123,15 @@ ReferenceElement build(int p) {
   const Eigen::Matrix<Real, -1, -1> first = derivative.transpose() * value;
   const Eigen::Matrix<Real, -1, -1> second = derivative.transpose() * first;
 
+  element.check_modes.setZero(checks, 4);
+  for (int c = 0; c < 4 && p >= 5; ++c) {
+    const int k = p - 5 + c;
+    for (int g = 0; g < checks; ++g) {
+      const Real mode = k == 0 ? Real(1) : legendre(k, element.check_node(g)).value;
+      element.check_modes(g, c) = static_cast<double>(mode * (2 * k + 1) / 2) * element.check_weight(g);
+    }
+  }
+
   element.node.resize(n);
   element.barycentric.resize(n);
   for (int i = 0; i < n; ++i) {

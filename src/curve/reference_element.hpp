@@ -23,6 +23,10 @@ struct ReferenceElement {
   Eigen::MatrixXd check_first;   ///< the same for l_i'
   Eigen::MatrixXd check_second;  ///< the same for l_i''
 
+  /// (p + 2) x 4, p >= 5: samples of u'' at the check nodes, times column c, give its Legendre coefficient of degree
+  /// p - 5 + c.
+  Eigen::MatrixXd check_modes;
+
   [[nodiscard]] int num_nodes() const { return degree + 1; }
   [[nodiscard]] int num_checks() const { return degree + 2; }
 
