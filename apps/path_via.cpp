@@ -26,7 +26,7 @@ void add_legs(const ViaResult& path, Json& json) {
                   {"length_error", has_path ? number(leg.length_error) : Json(nullptr)},
                   {"converged", leg.status == Status::ok},
                   {"locally_shortest", leg.locally_shortest},
-                  {"unique", leg.unique}};
+                  {"unique", leg.rivals_sought || !leg.unique ? nlohmann::json(leg.unique) : nlohmann::json(nullptr)}};
     if (!leg.message.empty()) entry["message"] = leg.message;
     json["legs"].push_back(std::move(entry));
   }

@@ -70,7 +70,8 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
     if (options.all) entry["points"] = points_json(candidate.points);
     json["candidates"].push_back(std::move(entry));
   }
-  json["unique"] = result.unique;
+  json["unique"] = nullptr;
+  if (result.rivals_sought || !result.unique) json["unique"] = result.unique;
   json["method"] = to_string(options.method);
   json["cell"] = result.cell;
   json["cells"] = result.num_cells;

@@ -51,10 +51,11 @@ void add_detours(SurfaceWalker& walker, const Vector& p, const Vector& q, std::v
 
 }  // namespace
 
-std::vector<Points> find_ways(const Surface& surface, const Vector& p, const Vector& q, const Context& context) {
+Ways find_ways(const Surface& surface, const Vector& p, const Vector& q, bool all, const Context& context) {
   const double step = (q - p).norm() / kStepsPerChord;
   SurfaceWalker walker(surface, step);
-  std::vector<Points> ways;
+  Ways result;
+  std::vector<Points>& ways = result.paths;
   Points walk = walker.walk(p, q);
   if (walk.cols() < 2) walk = walker.walk(q, p).rowwise().reverse().eval();
   if (walk.cols() >= 2) ways.push_back(std::move(walk));
@@ -62,13 +63,16 @@ std::vector<Points> find_ways(const Surface& surface, const Vector& p, const Vec
     Points way = search_by_samples(walker, p, q, surface.samples()->points, context);
     if (way.cols() >= 2) ways.push_back(std::move(way));
   }
-  if (ways.empty()) add_detours(walker, p, q, ways);
+  if (all || ways.empty()) {
+    add_detours(walker, p, q, ways);
+    result.rivals_sought = true;
+  }
   for (int search = 0; search < kSearches && ways.empty(); ++search) {
     SurfaceWalker shorter(surface, step / (1 << search));
     Points way = search_by_trees(shorter, p, q, {.seed = static_cast<std::uint64_t>(search + 1)}, context);
     if (way.cols() >= 2) ways.push_back(std::move(way));
   }
-  return ways;
+  return result;
 }
 
 }  // namespace taut::detail

@@ -131,6 +131,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   }
   const auto take = [&](const Starts& starts) {
     result.cell = starts.cell;
+    result.rivals_sought = starts.rivals_sought;
     if (starts.cells) result.num_cells = starts.cells->num_cells();
     result.seconds.cells += starts.seconds.cells;
     result.seconds.march += starts.seconds.march;

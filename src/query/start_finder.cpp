@@ -115,7 +115,9 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   Stopwatch watch;
   if (!levels_.exist()) {
     Starts starts;
-    for (Points& way : find_ways(surface_, p, q, context_)) {
+    Ways ways = find_ways(surface_, p, q, options_.all, context_);
+    starts.rivals_sought = ways.rivals_sought;
+    for (Points& way : ways.paths) {
       const double length = length_of(way);
       starts.paths.push_back({length, std::move(way)});
     }
@@ -147,6 +149,7 @@ Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const Dista
   const double distance = distance_at(surface_, *cells, from_p, q)(0);
   if (std::isfinite(distance)) {
     const bool rivals = options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
+    starts.rivals_sought = rivals;
     if (rivals && (options_.all || distance > kNoRivals * starts.cell)) {
       MarchOptions march_options{.method = options_.march};
       if (!options_.all) march_options.target = from_p.sources.col(0);

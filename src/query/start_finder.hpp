@@ -18,6 +18,7 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
+  bool rivals_sought = true;            ///< were there to be several ways, `paths` would hold them
   std::optional<Barrier> barrier;       ///< where the march stopped short of the end, if it did
   PathSeconds seconds;
 };

@@ -73,6 +73,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.length_error += leg.length_error;
     whole.locally_shortest = whole.locally_shortest && leg.locally_shortest;
     whole.unique = whole.unique && leg.unique;
+    whole.rivals_sought = whole.rivals_sought && leg.rivals_sought;
     whole.residual.surface = std::max(whole.residual.surface, leg.residual.surface);
     whole.residual.geodesic_curvature = std::max(whole.residual.geodesic_curvature, leg.residual.geodesic_curvature);
     whole.num_iterations += leg.num_iterations;

@@ -107,6 +107,20 @@ TEST(ManyDimensions, AKinematicChainTurnsRound) {
   }
 }
 
+TEST(ManyDimensions, RivalsAreClaimedOnlyWhereTheyWereSought) {
+  // Two rotations 3 radians apart: the other way round is 2 pi - 3.
+  const Vector from = coordinates(Matrix::Identity());
+  const Vector to = coordinates(rotation(Eigen::Vector3d(1, 2, 3), 3.0));
+  const PathResult straight = shortest_path(orthogonal_matrices(), from, to);
+  EXPECT_FALSE(straight.rivals_sought);
+  const PathResult all = shortest_path(orthogonal_matrices(), from, to, {.all = true});
+  EXPECT_TRUE(all.rivals_sought);
+  EXPECT_TRUE(all.unique);
+  EXPECT_NEAR(all.length, straight.length, 1e-9);
+  ASSERT_GE(all.candidates.size(), 2u);
+  EXPECT_NEAR(all.candidates[1].length, std::sqrt(2.0) * (2 * pi - 3), 1e-9);
+}
+
 // Half a turn about the z axis takes this pose to its mirror image, so that the middle of a shortest way, by symmetry,
 // has all links along that axis, and with its end at 3 one of them turned back: the equations depend on each other
 // there.

@@ -69,6 +69,9 @@ struct PathResult : Geodesic {
   std::vector<PathCandidate> candidates;
   /// False when another candidate is as short, within the errors of both or the tolerance.
   bool unique = true;
+  /// Were other ways round looked for. If not (more than 6 dimensions and a straight walk arrives, or a march that
+  /// tells no ways apart), `unique` says nothing, and the path may not be the shortest; PathOptions::all looks always.
+  bool rivals_sought = true;
   PathSeconds seconds;
 };
 
