@@ -111,6 +111,15 @@ std::optional<NewtonResult> Corrector::correct_gently(const Points& start) {
   return std::nullopt;
 }
 
+void Corrector::explain(Corrected& corrected) const {
+  const Geodesic& geodesic = corrected.geodesic;
+  corrected.message = std::string(geodesic.reason);
+  if (geodesic.status == Status::rank_deficient && geodesic.points.cols() > 0) {
+    const Vector at = weakest_point(surface_, geodesic.points);
+    if (at.size() <= kMostPrinted) corrected.message += fmt::format(", near ({:.4g})", fmt::join(at, ", "));
+  }
+}
+
 Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
   Corrected corrected{{}, {}, start};
   Geodesic& geodesic = corrected.geodesic;
@@ -119,9 +128,6 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
     case CorrectionMethod::newton:
       if (!newton_) newton_.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
       geodesic = newton_->solve(start, context_);
-      if (cell == 0 && !is_geodesic(geodesic)) {  // with cells, finer ones are the better help
-        if (auto gently = correct_gently(start)) geodesic = *std::move(gently);
-      }
       break;
     case CorrectionMethod::flow:
       geodesic =
@@ -134,11 +140,7 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
       geodesic.status = Status::ok;
       break;
   }
-  corrected.message = std::string(geodesic.reason);
-  if (geodesic.status == Status::rank_deficient && geodesic.points.cols() > 0) {
-    const Vector at = weakest_point(surface_, geodesic.points);
-    if (at.size() <= kMostPrinted) corrected.message += fmt::format(", near ({:.4g})", fmt::join(at, ", "));
-  }
+  explain(corrected);
   if (geodesic.status == Status::ok && geodesic.length > kMostGrowth * start_length) {
     geodesic.status = Status::not_converged;
     corrected.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
@@ -195,6 +197,18 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
       add_candidate(candidates, candidate_of(geodesic));
     }
     if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
+  }
+  // With cells, finer ones are the better help.
+  if (options_.method == CorrectionMethod::newton && !starts.cells && starts.cell == 0 &&
+      !is_geodesic(best->geodesic)) {
+    for (const StartPath& start : chosen) {
+      std::optional<NewtonResult> gently = correct_gently(start.points);
+      if (!gently) continue;
+      best = Corrected{*std::move(gently), {}, start.points};
+      explain(*best);
+      if (best->geodesic.status == Status::ok) add_candidate(candidates, candidate_of(best->geodesic));
+      break;
+    }
   }
   static_cast<Geodesic&>(result) = std::move(best->geodesic);
   result.message = std::move(best->message);

@@ -29,6 +29,8 @@ class Corrector {
   };
 
   [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start);
+  /// Fills the message.
+  void explain(Corrected& corrected) const;
   [[nodiscard]] Corrected shorten(const Points& start, double cell);
   [[nodiscard]] std::vector<StartPath> contenders(const std::vector<StartPath>& starts);
 
