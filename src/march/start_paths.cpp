@@ -172,6 +172,8 @@ class Ways {
   void add(const BandCell& crossing, double spread) {
     const auto x = cells_.point(crossing.cell);
     for (const StartPath& path : paths_) {
+      // A longer way may share this part of a shorter one.
+      if (path.length > crossing.length + kNoise * least_) continue;
       if ((path.points.colwise() - x).colwise().norm().minCoeff() < spread) return;
     }
     Points points = two_descents(surface_, cells_, from_p_, from_q_, x);

@@ -154,14 +154,14 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
 std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& starts) {
   if (!rough_) rough_.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
   std::vector<PathCandidate> rough;
-  std::vector<StartPath> found;
+  std::vector<StartPath> failed;
   Hope hope;
   double bound = std::numeric_limits<double>::infinity();  // the shortest is no longer than this
   for (const StartPath& start : starts) {
     if (hope.is_lost(start)) break;
     const NewtonResult geodesic = rough_->solve(start.points, context_);
     if (!is_geodesic(geodesic)) {
-      found.push_back(start);
+      failed.push_back(start);
       continue;
     }
     hope.found(start, geodesic.length);
@@ -170,14 +170,15 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
     bound = std::min(bound, candidate.length + candidate.length_error);
     add_candidate(rough, std::move(candidate));
   }
-  const bool converged = !rough.empty();
   std::vector<StartPath> result;
   for (PathCandidate& candidate : rough) {
     if (candidate.length - candidate.length_error > bound) continue;
     result.push_back({candidate.length, std::move(candidate.points)});
   }
-  // What did not converge roughly hardly ever will; but when nothing has, the reason must be found out.
-  if (!converged) result = std::move(found);
+  // What did not converge roughly is tried again as it is, unless it would be longer anyway.
+  for (StartPath& start : failed) {
+    if (start.length <= (1 + kMarchError) * bound) result.push_back(std::move(start));
+  }
   return result;
 }
 

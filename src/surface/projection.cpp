@@ -45,6 +45,8 @@ constexpr double kTurn = 0.25;
 constexpr double kShrunk = 1e-6;
 // A residual below this part of the coordinates or of the way gone is rounding without further proof.
 constexpr double kSurelyRounding = 1e-9;
+// ... and above this one never is.
+constexpr double kNeverRounding = 1e-4;
 
 /// Projects points in blocks. The state of a point stands in slot arrays, so that every visit is one dense batch.
 template <int D>
@@ -217,6 +219,7 @@ class Projector {
     double scale = distance_gone(j, x);
     for (Index c = 0; c < dim(); ++c) scale = std::max(scale, std::abs(x[c]));
     if (r_[idx(j)] <= kSurelyRounding * scale) return true;
+    if (r_[idx(j)] > kNeverRounding * scale) return false;  // a pole was jumped
     constexpr double kReach = 1024;
     std::vector<double> far(x, x + dim());
     for (Index c = 0; c < dim(); ++c) far[idx(c)] -= kReach * step_[idx(j * d_ + c)];

@@ -9,6 +9,7 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
+#include "taut/surface/formula.hpp"
 
 namespace taut {
 namespace {
@@ -248,6 +249,23 @@ TEST(Projection, AWrongJacobianIsNotTakenForRounding) {
       2, [](const Vector& x) { return x(0) - 0.25; }, [](const Vector&) -> Vector { return Eigen::Vector2d(0.5, 0); });
   const ProjectionResult result = project_to_surface(wrong, Eigen::Vector2d(3, 1));
   EXPECT_TRUE(!result.converged || std::abs(result.point(0) - 0.25) < 1e-12);
+}
+
+// Found on 23 November 2026: a step across the pole of a formula ended as converged with a residual of 1.6.
+TEST(Projection, AJumpAcrossAPoleIsNotTakenForRounding) {
+  const Surface surface = parse_surface("y/(x^2-0.6) + x - z");
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
+  Points starts(3, 2000);
+  for (double& c : starts.reshaped()) c = coordinate(random);
+  starts.col(0) << 1.370246109693469, -0.037362532504498391, -1.3114122136781912;
+  Points ends = starts;
+  const auto converged = project_to_surface(*surface.make_evaluator(), 3, 1, ends);
+  for (Index j = 0; j < ends.cols(); ++j) {
+    if (!converged(j)) continue;
+    const double off = std::abs(surface.value(ends.col(j))(0)) / surface.jacobian(ends.col(j)).norm();
+    EXPECT_LE(off, 1e-9) << "from " << starts.col(j).transpose();
+  }
 }
 
 TEST(Projection, RespectsTheLimits) {
