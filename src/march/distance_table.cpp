@@ -24,7 +24,7 @@ constexpr double kOffset = 0.7;
 /// Landmarks this close to an end, in spacings, say nothing about ways.
 constexpr double kEndSpacings = 1;
 /// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
-constexpr double kSameWaySpacings = 0.6;
+constexpr double kSameWaySpacings = 0.8;
 constexpr double kSameWay = 0.15;
 
 /// Two cells lie on the same side of the surface if their normals turn by less than this (cosine).

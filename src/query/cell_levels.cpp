@@ -19,6 +19,7 @@ namespace {
 constexpr double kMostCellsOff = 10;
 /// The normal should turn by no more than this from one cell to the next, radians, as long as there are not too many.
 constexpr double kMostTurn = 0.7;
+constexpr double kTurnQuantile = 0.95;
 constexpr int kMostRefinements = 2;
 constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
@@ -81,7 +82,7 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
 void CellLevels::refine_to_curvature() {
   std::shared_ptr<SurfaceCells>& coarsest = complete_.front();
   for (int i = 0; i < kMostRefinements && surface_.dim() == 3; ++i) {
-    if (normal_turn(*coarsest) <= kMostTurn || 4 * coarsest->num_cells() > kMostRefinedCells) return;
+    if (normal_turn(*coarsest, kTurnQuantile) <= kMostTurn || 4 * coarsest->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest = subdivided(size_);
   }

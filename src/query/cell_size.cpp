@@ -20,7 +20,6 @@ constexpr double kMostCellsPerSide = 160;
 constexpr Index kNeighbour = 6;
 constexpr Index kProbes = 400;
 /// The normals of a flat body turn at its rim only.
-constexpr double kTurnQuantile = 0.95;
 
 /// Typical distance between neighbouring samples of a surface (two-dimensional for d = 3): on average k of them lie
 /// within r_k, so the area a sample stands for is pi r_k^2 / k.
@@ -53,7 +52,7 @@ double cell_size_for_samples(const PointCloud& samples) {
   return std::clamp(2 * sample_spacing(samples.points), std::min(finest, coarse), coarse);
 }
 
-double normal_turn(const SurfaceCells& cells) {
+double normal_turn(const SurfaceCells& cells, double quantile) {
   const CellGrid& grid = cells.grid();
   const auto d = static_cast<std::size_t>(cells.dim());
   const double k = static_cast<double>(cells.codim());
@@ -72,7 +71,7 @@ double normal_turn(const SurfaceCells& cells) {
     }
   }
   if (turns.empty()) return 0;
-  const auto at = turns.begin() + static_cast<std::ptrdiff_t>(kTurnQuantile * static_cast<double>(turns.size()));
+  const auto at = turns.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(turns.size()));
   std::nth_element(turns.begin(), at, turns.end());
   return *at;
 }

@@ -14,7 +14,7 @@ namespace taut::detail {
 /// the samples can tell apart are told apart by the cells.
 [[nodiscard]] double cell_size_for_samples(const PointCloud& samples);
 
-/// By how much the normal space turns from one cell to the next, radians: 19 of 20 cells stay below it.
-[[nodiscard]] double normal_turn(const SurfaceCells& cells);
+/// By how much the normal space turns from one cell to the next, radians: the given part of them stays below it.
+[[nodiscard]] double normal_turn(const SurfaceCells& cells, double quantile);
 
 }  // namespace taut::detail

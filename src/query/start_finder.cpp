@@ -20,16 +20,18 @@ constexpr Index kMostRivals = 16;
 constexpr Index kMostWaysRound = 64;
 
 // The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
-constexpr double kTableTurn = 1.0;   // most that the normal turns from one of its cells to the next, radians
-constexpr double kRefinement = 1.4;  // the next finer size
+constexpr double kTableTurn = 0.85;  // most that the normal turns from one of its cells to the next, radians
+constexpr double kTurnQuantile = 0.95;
+constexpr double kRefinement = 1.2;  // the next finer size
 constexpr double kFewestCells = 400;
-constexpr double kFewestLandmarks = 210;
+constexpr double kFewestLandmarks = 320;
 constexpr double kLandmarksPerTurn2 = 0.08;
-// How wrong it is, is measured on a few ways.
-constexpr Index kCalibrationWays = 24;
+// How wrong it is, is measured on a few ways. Where it is too wrong, finer cells are taken.
+constexpr Index kCalibrationWays = 48;
 constexpr double kCalibrationTolerance = 1e-3;
 constexpr double kSafety = 2;
-constexpr double kLeastTableError = 0.02;
+constexpr double kLeastTableError = 0.03;
+constexpr double kMostWrong = 0.03;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
 
@@ -61,44 +63,45 @@ void StartFinder::tabulate(Index num_pairs) {
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
+  const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
   // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
-  std::shared_ptr<SurfaceCells> coarse;
-  double turn = 0;
-  for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); coarser > 1; coarser /= kRefinement) {
-    coarse = levels_.subdivided(coarser * levels_.size(0));
-    if (!coarse) return;
-    turn = normal_turn(*coarse);
-    if (turn <= kTableTurn) break;
-    coarse = nullptr;
+  for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); !table_; coarser /= kRefinement) {
+    const bool finest = coarser <= 1;
+    std::shared_ptr<SurfaceCells> cells = levels_.subdivided(std::max(1.0, coarser) * levels_.size(0));
+    if (!cells) return;
+    const double turn = normal_turn(*cells, kTurnQuantile);
+    if (turn > kTableTurn && !finest) continue;
+    const auto num_cells = static_cast<double>(cells->num_valid());
+    const double num_landmarks =
+        std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
+    if (num_landmarks * num_cells > most_work) return;
+    DistanceTable table(surface_, std::move(*cells), static_cast<Index>(num_landmarks), context_);
+    const double wrong = measure_error(table);
+    if (wrong > kMostWrong && !finest) continue;
+    table_ = std::move(table);
+    table_error_ = std::clamp(kSafety * wrong, kLeastTableError, kExcess);
   }
-  if (!coarse) {
-    coarse = levels_.subdivided(levels_.size(0));
-    if (!coarse) return;
-    turn = normal_turn(*coarse);
-  }
-  const auto num_cells = static_cast<double>(coarse->num_valid());
-  const double num_landmarks =
-      std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
-  if (num_landmarks * num_cells > kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine) return;
-  table_.emplace(surface_, std::move(*coarse), static_cast<Index>(num_landmarks), context_);
-  calibrate();
 }
 
-/// Finds out how wrong the table is, on ways between landmarks far apart.
-void StartFinder::calibrate() {
+/// How wrong a table is: the worst of some ways between landmarks far apart, relative to their lengths.
+double StartFinder::measure_error(const DistanceTable& table) const {
   NewtonSolver newton(surface_, {.tolerance = kCalibrationTolerance});
-  const Index n = table_->num_landmarks();
+  const Index n = table.num_landmarks();
   double worst = 0;
-  for (Index i = 0; i < kCalibrationWays; ++i) {
-    const Index from = i * n / kCalibrationWays;
-    const Vector p = table_->landmark(from);
-    const Vector q = table_->landmark((from + n / 2) % n);
-    for (const StartPath& start : table_->start_paths(p, q, {.excess = kLeastTableError, .max_paths = 1})) {
-      const NewtonResult geodesic = newton.solve(start.points, context_);
-      if (geodesic.status == Status::ok) worst = std::max(worst, std::abs(start.length / geodesic.length - 1));
+  for (Index way = 0; way < kCalibrationWays; ++way) {
+    const Index from = way * n / kCalibrationWays;
+    for (Index other = 0; other < kCalibrationWays; ++other) {  // until one lies on the same component, and far enough
+      const Index to = (from + n / 2 + other * n / kCalibrationWays) % n;
+      const std::vector<StartPath> starts =
+          table.start_paths(table.landmark(from), table.landmark(to), {.excess = kLeastTableError, .max_paths = 1});
+      if (starts.empty()) continue;
+      const NewtonResult geodesic = newton.solve(starts.front().points, context_);
+      if (geodesic.status != Status::ok) continue;
+      worst = std::max(worst, std::abs(starts.front().length / geodesic.length - 1));
+      break;
     }
   }
-  table_error_ = std::clamp(kSafety * worst, kLeastTableError, kExcess);
+  return worst;
 }
 
 Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {

@@ -57,7 +57,7 @@ class StartFinder {
   [[nodiscard]] static bool apart(SurfaceCells& cells, const Vector& p, const Vector& q);
 
  private:
-  void calibrate();
+  [[nodiscard]] double measure_error(const DistanceTable& table) const;
 
   const Surface& surface_;
   const PathOptions& options_;
