@@ -135,7 +135,9 @@ TEST(NewtonMany, TheCertificateTurnsAtTheAntipode) {
     EXPECT_EQ(result.locally_shortest, turn < 1) << turn;
     EXPECT_EQ(result.index > 0, turn > 1) << turn;
     ASSERT_EQ(result.conjugate_at.has_value(), turn > 1) << turn;
-    if (turn > 1) EXPECT_NEAR(*result.conjugate_at, std::numbers::pi, 1e-9) << turn;
+    if (turn > 1) {
+      EXPECT_NEAR(*result.conjugate_at, std::numbers::pi, 1e-9) << turn;
+    }
   }
 }
 
