@@ -29,13 +29,13 @@ constexpr double kMarchErrorFactor = 3;
 constexpr double kDoubt = 0.03;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
+constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
 /// A start from which Newton's method fails is shortened first, in so many segments, the points no farther from the
 /// surface than this part of its length.
 constexpr double kGentleSegments = 96;
 constexpr double kGentleOff = 0.1;
 /// Points of more coordinates are not printed.
 constexpr Index kMostPrinted = 16;
-constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
 
 PathCandidate candidate_of(const Geodesic& geodesic) {
   return {geodesic.length, geodesic.length_error, geodesic.locally_shortest, geodesic.points};
