@@ -20,10 +20,18 @@ template <int D>
 class NeighbourIndex {
  public:
   explicit NeighbourIndex(const SurfaceCells& cells) : cells_(cells), d_(cells.grid().dim()) {
-    blocks_.assign(kMinSlots, kNoBlock);
+    slots_.assign(kMinSlots, kNoBlock);
     for (Index axis = 0; axis < dim(); ++axis) {
       shift_[axis] = block_size_;
       block_size_ += side_bits(axis);
+    }
+    for (Index axis = 0; axis < dim(); ++axis) {
+      for (std::int32_t c = 0; c < side(axis); ++c) {
+        for (std::int32_t near = c - 1; near <= c + 1; ++near) {
+          const std::int32_t block = (near >> side_bits(axis)) - ((c - 1) >> side_bits(axis));
+          rows_[axis][c].places[block] |= places_at(near, axis);
+        }
+      }
     }
     update();
   }
@@ -34,7 +42,7 @@ class NeighbourIndex {
     for (; num_filed_ < n; ++num_filed_) {
       if (!cells_.valid(num_filed_)) continue;
       const std::int32_t* cell = cells_.grid().cell(num_filed_).data();
-      std::int32_t block[kMaxMarchDim];
+      std::int32_t block[kMaxDim];
       std::size_t place = 0;
       for (Index axis = 0; axis < dim(); ++axis) {
         block[axis] = cell[axis] >> side_bits(axis);
@@ -42,52 +50,40 @@ class NeighbourIndex {
       }
       const std::size_t b = file_block(block);
       entries_[(b << block_size_) | place] = static_cast<std::uint32_t>(num_filed_);
-      present_[b] |= std::uint64_t{1} << place;
+      blocks_[b].present |= std::uint64_t{1} << place;
     }
   }
 
   /// The valid cells around cell i in a fixed order, cell i among them. Lives until the next call.
   [[nodiscard]] std::span<const Index> around(Index i) {
     const std::int32_t* cell = cells_.grid().cell(i).data();
-    // On each axis, the at most two rows of blocks that the three coordinates lie in, and which places of each.
-    Row rows[kMaxMarchDim][2];
-    std::int32_t first[kMaxMarchDim];
+    Search search;
     for (Index axis = 0; axis < dim(); ++axis) {
-      first[axis] = (cell[axis] - 1) >> side_bits(axis);
-      rows[axis][0] = rows[axis][1] = {};
-      for (std::int32_t c = cell[axis] - 1; c <= cell[axis] + 1; ++c) {
-        Row& row = rows[axis][(c >> side_bits(axis)) - first[axis]];
-        row.shift[row.count++] = static_cast<std::uint8_t>(local(c, axis));
-      }
+      search.block[axis] = (cell[axis] - 1) >> side_bits(axis);
+      search.rows[axis] = &rows_[axis][cell[axis] & (side(axis) - 1)];
     }
     found_.clear();
-    for (std::size_t which = 0; which < std::size_t{1} << dim(); ++which) {
-      std::uint64_t wanted = 1;  // places in the block, a bit each
-      for (Index axis = 0; axis < dim(); ++axis) {
-        const Row& row = rows[axis][(which >> axis) & 1];
-        std::uint64_t moved = 0;
-        for (int r = 0; r < row.count; ++r) moved |= wanted << row.shift[r];
-        wanted = moved;
-      }
-      if (wanted == 0) continue;
-      const std::uint32_t block = find_block(first, which);
-      if (block == kNoBlock) continue;
-      const std::uint32_t* entries = entries_.data() + (std::size_t{block} << block_size_);
-      for (wanted &= present_[block]; wanted != 0; wanted &= wanted - 1) {
-        found_.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
-      }
-    }
+    collect<kMaxDim - 1>(search, ~std::uint64_t{0}, hash_of(search.block));
     return found_;
   }
 
  private:
+  static constexpr int kMaxDim = D == Eigen::Dynamic ? kMaxMarchDim : D;
+  static constexpr int kMaxSide = 8;
   static constexpr std::size_t kMinSlots = 64;
   static constexpr std::uint32_t kNoBlock = 0xffffffff;
 
-  /// Up to three places on one axis of a block, as far as they move a bit in the block's mask.
+  struct Block {
+    std::int32_t coordinates[kMaxDim];
+    std::uint64_t present = 0;  // which of its cells there are
+  };
+  /// The three coordinates around one lie in up to three blocks of an axis: which places of each, a bit each.
   struct Row {
-    std::uint8_t shift[3];
-    std::uint8_t count = 0;
+    std::uint64_t places[3] = {0, 0, 0};
+  };
+  struct Search {
+    std::int32_t block[kMaxDim];  // the first one on each axis, then the one looked at
+    const Row* rows[kMaxDim];
   };
 
   [[nodiscard]] Index dim() const { return D == Eigen::Dynamic ? d_ : D; }
@@ -97,53 +93,82 @@ class NeighbourIndex {
     if (dim() == 3) return 2;
     return axis < 6 ? 1 : 0;
   }
+  [[nodiscard]] std::int32_t side(Index axis) const { return 1 << side_bits(axis); }
   [[nodiscard]] std::size_t local(std::int32_t c, Index axis) const {
-    return static_cast<std::size_t>(c & ((1 << side_bits(axis)) - 1)) << shift_[axis];
+    return static_cast<std::size_t>(c & (side(axis) - 1)) << shift_[axis];
   }
 
-  [[nodiscard]] std::size_t slot_of(const std::int32_t* block) const {
-    std::uint64_t hash = 0;
-    for (Index axis = 0; axis < dim(); ++axis) {
-      hash = (hash ^ static_cast<std::uint32_t>(block[axis])) * 0x9E3779B97F4A7C15U;
-      hash ^= hash >> 32;
+  /// A bit for each place of a block that has this coordinate.
+  [[nodiscard]] std::uint64_t places_at(std::int32_t c, Index axis) const {
+    std::uint64_t places = 0;
+    const std::size_t mine = local(c, axis);
+    const std::size_t mask = static_cast<std::size_t>(side(axis) - 1) << shift_[axis];
+    for (std::size_t place = 0; place < std::size_t{1} << block_size_; ++place) {
+      if ((place & mask) == mine) places |= std::uint64_t{1} << place;
     }
-    const std::size_t mask = blocks_.size() - 1;
-    std::size_t slot = hash & mask;
-    while (blocks_[slot] != kNoBlock &&
-           !std::equal(block, block + dim(), coordinates_.data() + blocks_[slot] * static_cast<std::size_t>(dim()))) {
+    return places;
+  }
+
+  /// Adds the neighbours in all blocks along the axes up to `Axis`; `wanted`: the places that the axes above leave.
+  template <int Axis>
+  void collect(Search& search, std::uint64_t wanted, std::uint64_t hash) {
+    if constexpr (Axis < 0) {
+      const std::size_t b = slots_[slot_of(hash, search.block)];
+      if (b == kNoBlock) return;
+      const std::uint32_t* entries = entries_.data() + (b << block_size_);
+      for (wanted &= blocks_[b].present; wanted != 0; wanted &= wanted - 1) {
+        found_.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
+      }
+    } else {
+      if (Axis >= dim()) return collect<Axis - 1>(search, wanted, hash);
+      const std::int32_t first = search.block[Axis];
+      for (const std::uint64_t places : search.rows[Axis]->places) {
+        if (places != 0) collect<Axis - 1>(search, wanted & places, hash);
+        ++search.block[Axis];
+        hash += factor(Axis);
+      }
+      search.block[Axis] = first;
+    }
+  }
+
+  /// Linear in the coordinates: a step along an axis adds that axis' factor.
+  [[nodiscard]] std::uint64_t hash_of(const std::int32_t* block) const {
+    std::uint64_t hash = 0;
+    for (Index axis = 0; axis < dim(); ++axis) hash += factor(axis) * static_cast<std::uint64_t>(block[axis]);
+    return hash;
+  }
+  [[nodiscard]] static std::uint64_t factor(Index axis) {
+    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio
+    return kOdd * (kOdd + 2 * static_cast<std::uint64_t>(axis));
+  }
+  [[nodiscard]] std::size_t slot_of(std::uint64_t hash, const std::int32_t* block) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = (hash ^ (hash >> 32)) & mask;
+    while (slots_[slot] != kNoBlock && !std::equal(block, block + dim(), blocks_[slots_[slot]].coordinates)) {
       slot = (slot + 1) & mask;
     }
     return slot;
   }
 
-  [[nodiscard]] std::uint32_t find_block(const std::int32_t* first, std::size_t which) const {
-    std::int32_t block[kMaxMarchDim];
-    for (Index axis = 0; axis < dim(); ++axis) {
-      block[axis] = first[axis] + static_cast<std::int32_t>((which >> axis) & 1);
+  std::uint32_t file_block(const std::int32_t* coordinates) {
+    const std::uint64_t hash = hash_of(coordinates);
+    std::size_t slot = slot_of(hash, coordinates);
+    if (slots_[slot] != kNoBlock) return slots_[slot];
+    if (4 * (blocks_.size() + 1) > slots_.size()) {
+      rehash();
+      slot = slot_of(hash, coordinates);
     }
-    return blocks_[slot_of(block)];
+    slots_[slot] = static_cast<std::uint32_t>(blocks_.size());
+    Block& block = blocks_.emplace_back();
+    std::copy_n(coordinates, dim(), block.coordinates);
+    entries_.resize(blocks_.size() << block_size_, 0);
+    return slots_[slot];
   }
 
-  std::size_t file_block(const std::int32_t* block) {
-    std::size_t slot = slot_of(block);
-    if (blocks_[slot] == kNoBlock) {
-      const std::size_t count = coordinates_.size() / static_cast<std::size_t>(dim());
-      if (4 * (count + 1) > blocks_.size()) {
-        rehash(count);
-        slot = slot_of(block);
-      }
-      blocks_[slot] = static_cast<std::uint32_t>(count);
-      coordinates_.insert(coordinates_.end(), block, block + dim());
-      entries_.resize((count + 1) << block_size_, 0);
-      present_.push_back(0);
-    }
-    return blocks_[slot];
-  }
-
-  void rehash(std::size_t count) {
-    blocks_.assign(4 * blocks_.size(), kNoBlock);
-    for (std::size_t b = 0; b < count; ++b) {
-      blocks_[slot_of(coordinates_.data() + b * static_cast<std::size_t>(dim()))] = static_cast<std::uint32_t>(b);
+  void rehash() {
+    slots_.assign(4 * slots_.size(), kNoBlock);
+    for (std::size_t b = 0; b < blocks_.size(); ++b) {
+      slots_[slot_of(hash_of(blocks_[b].coordinates), blocks_[b].coordinates)] = static_cast<std::uint32_t>(b);
     }
   }
 
@@ -151,11 +176,11 @@ class NeighbourIndex {
   Index d_;
   Index num_filed_ = 0;
   int block_size_ = 0;  // log2 of the cells of a block
-  int shift_[kMaxMarchDim] = {};
-  std::vector<std::uint32_t> blocks_;      // open addressing by block coordinates
-  std::vector<std::int32_t> coordinates_;  // d a block
-  std::vector<std::uint32_t> entries_;     // 2^block_size_ a block: its cells
-  std::vector<std::uint64_t> present_;     // a block: which of them there are
+  int shift_[kMaxDim] = {};
+  Row rows_[kMaxDim][kMaxSide];
+  std::vector<std::uint32_t> slots_;  // open addressing by block coordinates
+  std::vector<Block> blocks_;
+  std::vector<std::uint32_t> entries_;  // 2^block_size_ a block: its cells
   std::vector<Index> found_;
 };
 

@@ -1,4 +1,5 @@
 #include "march/support.hpp"
+#include "taut/surface/formula.hpp"
 
 namespace taut {
 namespace {
@@ -105,6 +106,17 @@ TEST(Codimension, CurveInThreeDimensions) {
   const Vector source = Eigen::Vector3d(0.6, 0.8, 0);
   SurfaceCells cells = test::all_cells(circle, source, 0.1);
   const DistanceField field = march(circle, cells, source);
+  EXPECT_LT(test::sphere_errors(cells, field, source).mean, 1e-5);
+}
+
+// A circle in the plane of the last two axes of R^8, walked both ways round.
+TEST(Codimension, CurveInEightDimensions) {
+  const Surface circle = parse_surface("x1=0; x2=0; x3=0; x4=0; x5=0; x6=0; x7^2+x8^2=1");
+  Vector source = Vector::Zero(8);
+  source.tail(2) << 0.6, 0.8;
+  SurfaceCells cells = test::all_cells(circle, source, 0.1);
+  const DistanceField field = march(circle, cells, source);
+  EXPECT_EQ(field.num_reached, cells.num_valid());
   EXPECT_LT(test::sphere_errors(cells, field, source).mean, 1e-5);
 }
 
