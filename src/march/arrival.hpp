@@ -15,22 +15,22 @@ namespace taut::detail {
 
 /// A neighbour y of x whose distance is known, unrolled into the tangent space at x (geodesic normal coordinates). All
 /// vectors are in the frame of x, so their first k entries are zero.
-template <int D>
+template <int D, class Scalar = double>
 struct Neighbour {
-  SmallVector<D> position;  ///< z: where y lies; x is at 0
-  SmallVector<D> gradient;  ///< g: the unit gradient of the distance at y, carried to x along the edge
-  double distance;          ///< u at y
-  double length;            ///< |z|, the geodesic distance of x and y
-  double along;             ///< -z . g: how far x lies ahead of y
-  double estimate;          ///< of u at x from y alone
-  Index source;             ///< which source the distance is from
+  SmallVector<D, Scalar> position;  ///< z: where y lies; x is at 0
+  SmallVector<D, Scalar> gradient;  ///< g: the unit gradient of the distance at y, carried to x along the edge
+  Scalar distance;                  ///< u at y
+  Scalar length;                    ///< |z|, the geodesic distance of x and y
+  Scalar along;                     ///< -z . g: how far x lies ahead of y
+  Scalar estimate;                  ///< of u at x from y alone
+  Index source;                     ///< which source the distance is from
 };
 
 /// What the neighbours say about x.
-template <int D>
+template <int D, class Scalar = double>
 struct Arrival {
-  double distance;          ///< u at x
-  SmallVector<D> gradient;  ///< unit gradient of u at x: in the frame of x where neighbours are, finally in R^d
+  Scalar distance;                  ///< u at x
+  SmallVector<D, Scalar> gradient;  ///< unit gradient of u at x: in the frame of x where neighbours are, finally in R^d
   /// True when x lies between the rays through its neighbours, n = 1 included. False: beside all rays (at an edge of
   /// the surface, on the cut locus, or come too early), the distance is known from a single neighbour.
   bool enclosed;
@@ -39,8 +39,9 @@ struct Arrival {
 
 /// The square of an estimate of u at x from one point y alone, as if the front through y were a circle about its
 /// source. `along`: component of the step along the gradient at y; `length2`: its squared length.
-inline double circular_estimate2(double distance, double along, double length2) {
-  return std::max(0.0, distance * distance + 2 * distance * along + length2);
+template <class Scalar>
+Scalar circular_estimate2(Scalar distance, Scalar along, Scalar length2) {
+  return std::max(Scalar{0}, distance * distance + 2 * distance * along + length2);
 }
 
 /// Neighbours whose gradient makes less than this cosine with the way to x lie beside or ahead of it.
@@ -50,60 +51,63 @@ inline constexpr double kBehind = 0.3;
 inline constexpr double kMinBranchCosine = 0.5;
 
 /// The neighbour with the least estimate.
-template <int D>
-const Neighbour<D>& best_of(const std::vector<Neighbour<D>>& neighbours) {
+template <int D, class Scalar>
+const Neighbour<D, Scalar>& best_of(const std::vector<Neighbour<D, Scalar>>& neighbours) {
   return *std::min_element(neighbours.begin(), neighbours.end(),
                            [](const auto& a, const auto& b) { return a.estimate < b.estimate; });
 }
 
 /// From a single neighbour: the best one's ray, where it passes close to x, else the shortest way over an edge.
-template <int D>
-Arrival<D> arrival_from_one(const std::vector<Neighbour<D>>& neighbours, Index surface_dim) {
-  const Neighbour<D>& first = best_of<D>(neighbours);
-  constexpr double kNearRay = 0.9;  // cosine
+template <int D, class Scalar>
+Arrival<D, Scalar> arrival_from_one(const std::vector<Neighbour<D, Scalar>>& neighbours, Index surface_dim) {
+  const Neighbour<D, Scalar>& first = best_of(neighbours);
+  constexpr Scalar kNearRay = 0.9;  // cosine
   if (surface_dim > 1 && first.along > kNearRay * first.length) {
-    const SmallVector<D> ray = first.distance * first.gradient - first.position;
+    const SmallVector<D, Scalar> ray = first.distance * first.gradient - first.position;
     return {first.estimate, ray / ray.norm(), false, first.source};
   }
-  const Neighbour<D>& y = *std::min_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
-    return a.distance + a.length < b.distance + b.length;
-  });
-  const SmallVector<D> direction = y.length > 0 ? SmallVector<D>(-y.position / y.length) : y.gradient;
+  const Neighbour<D, Scalar>& y =
+      *std::min_element(neighbours.begin(), neighbours.end(),
+                        [](const auto& a, const auto& b) { return a.distance + a.length < b.distance + b.length; });
+  const SmallVector<D, Scalar> direction = y.length > 0 ? SmallVector<D, Scalar>(-y.position / y.length) : y.gradient;
   return {y.distance + y.length, direction, surface_dim == 1, y.source};
 }
 
 /// n = 2. Do the rays through two neighbours, which miss x by signed distances, pass on either side of it and from
 /// behind?
-template <int D>
-bool surrounds(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right, double miss_right) {
-  const double t = miss_left / (miss_left - miss_right);
+template <int D, class Scalar>
+bool surrounds(const Neighbour<D, Scalar>& left, Scalar miss_left, const Neighbour<D, Scalar>& right,
+               Scalar miss_right) {
+  const Scalar t = miss_left / (miss_left - miss_right);
   return miss_left > miss_right && left.along + t * (right.along - left.along) > 0;
 }
 
 /// n = 2. Fermat's principle on the segment z(t) between two neighbours: the least sqrt(2 v(t)) + |z(t)|.
-template <int D>
-Arrival<D> arrival_between(const Neighbour<D>& left, double miss_left, const Neighbour<D>& right, double miss_right) {
-  using Vec = SmallVector<D>;
+template <int D, class Scalar>
+Arrival<D, Scalar> arrival_between(const Neighbour<D, Scalar>& left, Scalar miss_left,
+                                   const Neighbour<D, Scalar>& right, Scalar miss_right) {
+  using Vec = SmallVector<D, Scalar>;
+  constexpr Scalar kHalf = 0.5;
   const Vec edge = right.position - left.position;
-  const double edge2 = edge.squaredNorm();
-  const double v0 = 0.5 * left.distance * left.distance;
-  const double rise = 0.5 * right.distance * right.distance - v0;
-  const double bend = 0.5 * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
+  const Scalar edge2 = edge.squaredNorm();
+  const Scalar v0 = kHalf * left.distance * left.distance;
+  const Scalar rise = kHalf * right.distance * right.distance - v0;
+  const Scalar bend = kHalf * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
   // The rays themselves give t to first order; two Newton steps on the distances settle the direction.
-  double t = std::clamp(miss_left / (miss_left - miss_right), 0.0, 1.0);
+  Scalar t = std::clamp(miss_left / (miss_left - miss_right), Scalar{0}, Scalar{1});
   constexpr int kSteps = 2;
   for (int step = 0;; ++step) {
     const Vec z = left.position + t * edge;
-    const double length = z.norm();
-    const double u = std::sqrt(std::max(0.0, 2 * (v0 + t * rise + bend * t * (1 - t))));
-    const double along = length > 0 ? z.dot(edge) / length : 0.0;
-    const double curvature = length > 0 ? (edge2 - along * along) / length : 0.0;  // of |z(t)|
+    const Scalar length = z.norm();
+    const Scalar u = std::sqrt(std::max(Scalar{0}, 2 * (v0 + t * rise + bend * t * (1 - t))));
+    const Scalar along = length > 0 ? z.dot(edge) / length : Scalar{0};
+    const Scalar curvature = length > 0 ? (edge2 - along * along) / length : Scalar{0};  // of |z(t)|
     if (step == kSteps || !(curvature > 0) || !(u > 0)) {
       return {u + length, length > 0 ? Vec(-z / length) : left.gradient, true, left.source};
     }
-    const double slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
-    const double second = curvature - (2 * bend + slope * slope) / u;
-    t = std::clamp(t - (slope + along) / std::max(second, 0.5 * curvature), 0.0, 1.0);
+    const Scalar slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
+    const Scalar second = curvature - (2 * bend + slope * slope) / u;
+    t = std::clamp(t - (slope + along) / std::max(second, kHalf * curvature), Scalar{0}, Scalar{1});
   }
 }
 
@@ -216,7 +220,7 @@ std::size_t ArrivalSolver<D, K>::best_candidate() const {
 
 template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::one_sided() const {
-  return lift(arrival_from_one<D>(neighbours_, surface_dim()));
+  return lift(arrival_from_one(neighbours_, surface_dim()));
 }
 
 template <int D, int K>
@@ -287,7 +291,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       const double miss_left = miss(pair[0]);
       const double miss_right = miss(pair[1]);
       if (surrounds(pair[0], miss_left, pair[1], miss_right)) {
-        Arrival<D> arrival = arrival_between<D>(pair[0], miss_left, pair[1], miss_right);
+        Arrival<D> arrival = arrival_between(pair[0], miss_left, pair[1], miss_right);
         arrival.source = first.source;
         return lift(arrival);
       }
@@ -304,7 +308,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
 template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   const Index n = surface_dim();
-  const Neighbour<D>& first = best_of<D>(neighbours_);
+  const Neighbour<D>& first = best_of(neighbours_);
   Vec gradient = first.distance * first.gradient - first.position;  // G; its length is the distance
   const double start = gradient.norm();
   if (!(start > 0)) return one_sided();

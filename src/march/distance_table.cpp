@@ -122,10 +122,10 @@ void DistanceTable::fill(const Surface& surface, const Context& context) {
         field = march(surface, cells_, cells_.point(landmark), {}, inner);
       }
       for (Index i = 0; i < cells_.num_cells(); ++i, to += d + 1) {
-        to[0] = static_cast<float>(charts ? chart_march->distance(i) : field.distance(i));
+        to[0] = charts ? chart_march->distance(i) : static_cast<float>(field.distance(i) / cells_.grid().size());
         Eigen::Map<Eigen::VectorXf> gradient(to + 1, cells_.dim());
         if (charts) {
-          gradient.noalias() = (charts->axes(i) * chart_march->gradient(i)).cast<float>();
+          gradient.noalias() = charts->axes(i).cast<float>() * chart_march->gradient(i);
         } else {
           gradient = field.gradient.col(i).cast<float>();
         }
@@ -166,7 +166,8 @@ DistanceTable::View DistanceTable::look(const VectorIn& x) const {
   if (view.cell == CellGrid::kNone) return view;
   const std::size_t n = landmarks_.size();
   const float* distance = row(view.cell);
-  const Eigen::VectorXf step = (x - cells_.point(view.cell)).cast<float>();
+  const double size = cells_.grid().size();
+  const Eigen::VectorXf step = ((x - cells_.point(view.cell)) / size).cast<float>();
   view.distance.assign(n, 0);
   for (Index axis = 0; axis < cells_.dim(); ++axis) {
     const float* gradient = distance + static_cast<std::size_t>(axis + 1) * n;
@@ -176,7 +177,8 @@ DistanceTable::View DistanceTable::look(const VectorIn& x) const {
   const float step2 = step.squaredNorm();
   for (std::size_t l = 0; l < n; ++l) {
     const float u = distance[l];
-    view.distance[l] = u < kFar ? std::sqrt(std::max(0.0F, u * u + 2 * u * view.distance[l] + step2)) : kFar;
+    const float cells = u < kFar ? std::sqrt(std::max(0.0F, u * u + 2 * u * view.distance[l] + step2)) : kFar;
+    view.distance[l] = static_cast<float>(size) * cells;
   }
   return view;
 }
@@ -194,7 +196,7 @@ void DistanceTable::walk(Index cell, std::size_t landmark, std::vector<Index>& w
     for (const Index j : links) {
       const float there = row(j)[landmark];
       if (!(there < here)) continue;
-      const double length = there + (cells_.point(j) - cells_.point(cell)).norm();
+      const double length = there * cells_.grid().size() + (cells_.point(j) - cells_.point(cell)).norm();
       if (length < least) {
         least = length;
         next = j;

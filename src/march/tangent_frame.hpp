@@ -12,8 +12,8 @@ namespace taut::detail {
 inline constexpr int kMaxMarchDim = 12;
 
 /// A vector of D entries, or of at most kMaxMarchDim when D is dynamic: never on the heap.
-template <int D>
-using SmallVector = Eigen::Matrix<double, D, 1, 0, D == Eigen::Dynamic ? kMaxMarchDim : D, 1>;
+template <int D, class Scalar = double>
+using SmallVector = Eigen::Matrix<Scalar, D, 1, 0, D == Eigen::Dynamic ? kMaxMarchDim : D, 1>;
 
 /// Orthonormal coordinates of the tangent space at a point, from an orthonormal basis N (d x k) of the normal space.
 /// With the Householder reflections H_1, ..., H_k that carry N to the first k axes, the last d - k rows of H_k ... H_1

@@ -22,11 +22,9 @@ namespace {
 /// A corrected path is never much longer than its start; one that is has jumped somewhere.
 constexpr double kMostGrowth = 1.1;
 /// Starts are corrected as long as they may turn out the shortest, the marched distances being this wrong, or this many
-/// times as wrong as those of the ways corrected before...
+/// times as wrong as those of the ways corrected before.
 constexpr double kMarchError = 0.1;
 constexpr double kMarchErrorFactor = 3;
-/// ... while a path this much longer than what was marched has missed the way that the march has seen.
-constexpr double kDoubt = 0.03;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
 constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
@@ -217,7 +215,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
   result.candidates = std::move(candidates);
   result.unique = first_is_unique(result.candidates, options_.tolerance);
   result.seconds.correct += watch.seconds();
-  return result.status == Status::ok && result.length <= (1 + kDoubt) * starts.paths.front().length;
+  return result.status == Status::ok && result.length <= (1 + starts.doubt) * starts.paths.front().length;
 }
 
 bool is_better(const Geodesic& a, const Geodesic& b) {

@@ -32,6 +32,7 @@ constexpr double kCalibrationTolerance = 1e-3;
 constexpr double kSafety = 2;
 constexpr double kLeastTableError = 0.03;
 constexpr double kMostWrong = 0.03;
+constexpr double kLeastTableDoubt = 0.01;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
 
@@ -80,6 +81,7 @@ void StartFinder::tabulate(Index num_pairs) {
     if (wrong > kMostWrong && !finest) continue;
     table_ = std::move(table);
     table_error_ = std::clamp(kSafety * wrong, kLeastTableError, kExcess);
+    table_doubt_ = std::clamp(kSafety * wrong, kLeastTableDoubt, kMostWrong);
   }
 }
 
@@ -110,6 +112,7 @@ Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {
   const Stopwatch watch;
   starts.paths = table_->start_paths(p, q, {.excess = table_error_, .max_paths = kMostRivals});
   starts.cell = table_->cells().grid().size();
+  starts.doubt = table_doubt_;
   starts.seconds.march = watch.seconds();
   return starts;
 }

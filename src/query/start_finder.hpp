@@ -18,6 +18,7 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
+  double doubt = 0.03;                  ///< a path this much longer than the marched way has missed it, relative
   bool rivals_sought = true;            ///< were there to be several ways, `paths` would hold them
   std::optional<Barrier> barrier;       ///< where the march stopped short of the end, if it did
   PathSeconds seconds;
@@ -64,7 +65,8 @@ class StartFinder {
   const Context& context_;
   mutable CellLevels levels_;  // makes cells when they are first asked for, under its own lock
   std::optional<DistanceTable> table_;
-  double table_error_ = 0;  // of the lengths by the table, relative
+  double table_error_ = 0;  // of the lengths by the table, relative: rivals within it are sought
+  double table_doubt_ = 0;  // a path this much longer than the table says is doubted
 };
 
 }  // namespace taut::detail

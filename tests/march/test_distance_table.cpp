@@ -72,6 +72,18 @@ TEST(DistanceTable, DistancesAreThoseOfMarches) {
   }
 }
 
+TEST(DistanceTable, IsTheSameInAllUnits) {
+  const Vector p = Eigen::Vector3d(0.6, 0, 0.8);
+  const Vector q = Eigen::Vector3d(-0.48, 0.8, -0.36).normalized();
+  for (const double unit : {1e-25, 1.0, 1e25}) {
+    const Surface sphere = parse_surface("x^2+y^2+z^2 = r^2", {.parameters = {{"r", unit}}});
+    const DistanceTable table(sphere, cells_in_box(sphere, 0.18 * unit, 1.3 * unit), 150);
+    const std::vector<StartPath> paths = table.start_paths(p * unit, q * unit);
+    ASSERT_FALSE(paths.empty()) << unit;
+    EXPECT_NEAR(paths[0].length / unit, test::sphere_distance(p, q), 0.04 * test::sphere_distance(p, q)) << unit;
+  }
+}
+
 TEST(DistanceTable, OppositePointsHaveSeveralStarts) {
   const Surface sphere = test::unit_sphere();
   const DistanceTable table(sphere, cells_in_box(sphere, 0.18, 1.3), 200);

@@ -56,8 +56,9 @@ class DistanceTable {
 
   SurfaceCells cells_;
   double spacing_ = 0;
-  std::vector<Index> landmarks_;           // their cells
-  std::vector<float> table_;               // a row a cell: distance to every landmark, then its gradient, axis by axis
+  std::vector<Index> landmarks_;  // their cells
+  // A row a cell: distance to every landmark, in cells' sizes, then its gradient, axis by axis.
+  std::vector<float> table_;
   std::vector<std::uint32_t> first_link_;  // num_cells + 1
   std::vector<std::uint32_t> links_;       // cells on the same sheet around each
 };
