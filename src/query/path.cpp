@@ -145,6 +145,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
   std::optional<PathResult> best;
   std::optional<Barrier> barrier;
+  bool sure = true;
+  double marched = 0;
   for (int level = 0; level < levels().num_levels(); ++level) {
     Starts starts;
     try {
@@ -173,16 +175,22 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
                                levels().size(level)));
       continue;
     }
-    const bool sure = corrector.correct(result, starts);
+    sure = corrector.correct(result, starts);
+    marched = starts.paths.front().length;
     const bool second_try = best.has_value();
     if (!best || detail::is_better(result, *best)) best = result;
     best->seconds = result.seconds;
     // Within a cell the start is as good as it gets; without cells there is no other.
-    if (sure || second_try || !levels().exist() || (p - q).norm() < result.cell) break;
+    sure = sure || !levels().exist() || (p - q).norm() < result.cell;
+    if (sure || second_try) break;
   }
   if (!best) {
     explain_no_way(result, barrier);
     return result;
+  }
+  if (!sure && best->status == Status::ok && options.method != CorrectionMethod::grid) {
+    best->message = fmt::format(
+        "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
   }
   return *std::move(best);
 }

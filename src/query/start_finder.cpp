@@ -25,7 +25,7 @@ constexpr double kTurnQuantile = 0.95;
 constexpr double kRefinement = 1.2;  // the next finer size
 constexpr double kFewestCells = 400;
 constexpr double kFewestLandmarks = 320;
-constexpr double kLandmarksPerTurn2 = 0.08;
+constexpr double kLandmarksPerTurn2 = 0.1;
 // How wrong it is, is measured on a few ways. Where it is too wrong, finer cells are taken.
 constexpr Index kCalibrationWays = 48;
 constexpr double kCalibrationTolerance = 1e-3;

@@ -130,6 +130,20 @@ TEST(ShortestPath, EveryMethodAgreesToItsAccuracy) {
   }
 }
 
+// A wall across the way, lower and narrower than a cell: what cells do not see makes the path longer than they say.
+TEST(ShortestPath, SaysWhenTheCellsKnowAShorterWay) {
+  const Surface wall = parse_surface("z = 0.08 exp(-(50x)^2)", {.domain = {"x^2+y^2 <= 4"}});
+  const Vector p = Eigen::Vector3d(-1, 0, 0);
+  const Vector q = Eigen::Vector3d(1, 0.3, 0);
+  const PathResult coarse = shortest_path(wall, p, q, {.cell = 0.3});
+  EXPECT_EQ(coarse.status, Status::ok);
+  EXPECT_NE(coarse.message.find("a shorter path may exist"), std::string::npos) << coarse.message;
+  const PathResult fine = shortest_path(wall, p, q, {.cell = 0.02});
+  EXPECT_EQ(fine.status, Status::ok);
+  EXPECT_EQ(fine.message, "");
+  EXPECT_NEAR(fine.length, coarse.length, 1e-8);
+}
+
 TEST(ShortestPath, SamePointHasLengthZero) {
   const PathResult path = shortest_path(test::unit_sphere(), axis(3, 0), axis(3, 0));
   EXPECT_EQ(path.status, Status::ok);

@@ -58,10 +58,11 @@ struct PathCandidate {
 
 /// A path: the geodesic and how it was found.
 struct PathResult : Geodesic {
-  Vector from;          ///< d: the start, on the surface
-  Vector to;            ///< d: the end, on the surface
-  std::string message;  ///< why `status` is not ok, in one sentence; empty otherwise
-  double cell = 0;      ///< h of the cells that were walked, model units
+  Vector from;  ///< d: the start, on the surface
+  Vector to;    ///< d: the end, on the surface
+  /// Why `status` is not ok, in one sentence; where it is, mostly empty: else why the path may not be the shortest.
+  std::string message;
+  double cell = 0;  ///< h of the cells that were walked, model units
   Index num_cells = 0;
   Points grid_path;  ///< d x g: the polyline the correction started from
   /// Distinct geodesics that were found, shortest first; the first one is this path. Without PathOptions::all only
