@@ -67,6 +67,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
   static constexpr int kMaxCycles = 14;
+  static constexpr double kTooWeak = 3e-5;       // gradients, of the strongest: the second variation says nothing below
   static constexpr double kShortestDip = 1e-5;   // of the whole: how closely a near singular point is looked at...
   static constexpr double kDipTolerance = 1e-5;  // ... when asked for no less than this
 
@@ -404,7 +405,8 @@ class NewtonDriver : public NewtonSolver::Backend {
     if (outcome == Relaxation::singular || !check_.regular || !finite) {
       result.status = Status::rank_deficient;
       result.reason = "the curve runs into a point where the Jacobian of F loses rank";
-    } else if ((outcome == Relaxation::converged || outcome == Relaxation::saddle) && dips()) {
+    } else if (outcome != Relaxation::off_surface && outcome != Relaxation::collapsed &&
+               (dips() || check_.weakest_gradient < kTooWeak)) {
       result.status = Status::rank_deficient;
       result.reason = "the curve runs through, or too close to tell by, a singular point of the surface";
     } else if (outcome == Relaxation::off_surface) {

@@ -133,6 +133,29 @@ TEST(ManyDimensions, AWayThroughASingularPoseIsSaidToBeOne) {
   EXPECT_NEAR(path.length, 14.172985754, 1e-8);  // of perturbed poses, to where they meet
 }
 
+// Beside the singular point the second variation is as large as its inverse distance: curves that pass it at 1e-6 came
+// out as certain minima.
+TEST(ManyDimensions, PosesOffASingularWayByRoundingAreNotCalledMinima) {
+  const Surface surface = chain();
+  const auto evaluator = surface.make_evaluator();
+  const Vector pose{{1, 0, 0, 2, 0, 0, 2, -1, 0, 3, -1, 0, 3, 0, 0}};
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal(0, 1e-14);
+  for (const double tolerance : {1e-9, 1e-12}) {
+    PathSolver solver(surface, {.tolerance = tolerance});
+    for (int i = 0; i < 6; ++i) {
+      Points ends(15, 2);
+      ends << pose, -pose;
+      for (double& x : ends.reshaped()) x += normal(random);
+      ASSERT_TRUE(project_to_surface(*evaluator, 15, surface.codim(), ends).all());
+      const PathResult path = solver.solve(ends.col(0), ends.col(1));
+      EXPECT_EQ(path.status, Status::rank_deficient) << i << ", " << tolerance;
+      EXPECT_FALSE(path.locally_shortest) << i << ", " << tolerance;
+      EXPECT_NEAR(path.length, 14.172985754, path.length_error + 1e-8) << i << ", " << tolerance;
+    }
+  }
+}
+
 // Walks towards the far end used to step over singular poses onto other sheets, from where no correction began.
 TEST(ManyDimensions, ChainsTurnBetweenRandomPoses) {
   const Surface surface = chain();
