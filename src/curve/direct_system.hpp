@@ -119,12 +119,18 @@ class DirectSystem {
     return -right_.cwiseProduct(y_).sum();
   }
 
-  /// After factor(curve, true, true) failed: is there a direction in which the energy falls. False when the direction
-  /// is neutral (a conjugate point at the very end, as between antipodes of a sphere): then there is nothing to gain.
-  bool find_negative_direction(const Curve& curve) {
-    if (chain_.first_failing() <= 0) return false;
-    const double curvature = chain_.negative_direction(negative_.data());
-    double stiffness = 0;
+  /// After factor(curve, true, true) failed: a direction in which the energy does not rise; after confirm_minimum the
+  /// softest. It is nearly neutral where a conjugate point is close to the end (as between antipodes of a sphere).
+  SoftDirection soft_direction(const Curve& curve, Evaluator& /*evaluator*/) {
+    const Index end = chain_.first_failing() < 0 ? curve.num_elements() - 1 : chain_.first_failing();
+    if (end <= 0) return {};
+    SoftDirection soft;
+    soft.found = true;
+    constexpr double kAlike = 1e-3;  // of the stiffness of an element
+    soft.curvature = chain_.soft_direction(end, kAlike * curve.scale(end) / 2, negative_.data());
+    soft.slope = std::abs(right_.cwiseProduct(negative_).sum());
+    soft.longest = std::sqrt(negative_.colwise().squaredNorm().maxCoeff());
+    soft.stiffness = 0;
     const int p = curve.degree();
     const Index n = curve.num_nodes();
     for (Index e = 0; e < curve.num_elements(); ++e) {
@@ -138,20 +144,26 @@ class DirectSystem {
         }
         const Index node = e * p + i;
         if (node > 0 && node + 1 < n) {
-          stiffness += curve.scale(e) * vector_.dot(tangents(node) * negative_.col(node));
+          soft.stiffness += curve.scale(e) * vector_.dot(tangents(node) * negative_.col(node));
         }
       }
     }
-    return curvature < -1e-7 * stiffness;
+    return soft;
   }
   /// That direction, downhill, d x nodes.
-  void negative_step(Nodes& step) {
+  void soft_step(Nodes& step) {
     if (right_.cwiseProduct(negative_).sum() < 0) negative_ = -negative_;
     expand(negative_, step);
   }
 
-  /// The factorisation has told already.
-  [[nodiscard]] bool confirm_minimum(const Curve& /*curve*/, Evaluator& /*evaluator*/) const { return true; }
+  /// After factor(curve, true, true): the factorisation has told already, but for how small the least curvature may be.
+  [[nodiscard]] Confirmation confirm_minimum(const Curve& curve, Evaluator& /*evaluator*/, double /*energy*/) {
+    constexpr double kWeak = 0.05;  // of the stiffness of an element
+    const Index last = curve.num_elements() - 1;
+    if (last < 1) return Confirmation::minimum;
+    const double stiffness = (curve.scale(last - 1) + curve.scale(last)) / 2;
+    return chain_.least_pivot(last) < kWeak * stiffness ? Confirmation::soft : Confirmation::minimum;
+  }
   /// Was the last factored matrix positive definite.
   [[nodiscard]] bool minimum() const { return chain_.first_failing() < 0; }
   [[nodiscard]] int num_negative() const { return chain_.num_negative(); }

@@ -133,19 +133,43 @@ class ElementChain {
     for (Eigen::Index e = 0; e < m_; ++e) back_substitute(e, y, 1);
   }
 
-  /// A direction v with v^T A v <= 0, after factor(true) failed at an element end: q x (m degree + 1). Returns v^T A v.
-  double negative_direction(double* v) {
+  /// Least eigenvalue of the pivot of element end j, after factor(true).
+  [[nodiscard]] double least_pivot(Eigen::Index j) {
+    const Eigen::Map<Block> pivot = block_of(pivot_, j);
+    if constexpr (Q == 1) return pivot(0, 0);
+    if constexpr (Q == 2) {
+      return (pivot.trace() - std::hypot(pivot(0, 0) - pivot(1, 1), 2 * pivot(0, 1))) / 2;
+    } else {
+      return eigen_.compute(pivot, Eigen::EigenvaluesOnly).eigenvalues()(0);
+    }
+  }
+
+  /// The direction v of least v^T A v at element end j that vanishes from the next one on, q x (m degree + 1), where
+  /// the ends before j have positive definite pivots: of several, with pivots that differ by less than `level`, the
+  /// one that leads down. Returns v^T A v.
+  double soft_direction(Eigen::Index j, double level, double* v) {
     const Eigen::Index stride = inner_ + q_;
     Eigen::Map<Eigen::VectorXd>(v, m_ * stride + q_).setZero();
-    const Eigen::Index j = first_failing_;
-    eigen_.compute(block_of(pivot_, j));
-    Eigen::Map<Segment>(v + j * stride, q_) = eigen_.eigenvectors().col(0);
+    const Eigen::Map<Block> pivot = block_of(pivot_, j);
+    eigen_.compute(pivot);
+    const Segment load = first_failing_ == j ? Segment(segment(j)) : Segment(pivot * segment(j));
+    Segment here = Segment::Zero(q_);
+    for (Eigen::Index i = 0; i < q_ && eigen_.eigenvalues()(i) <= eigen_.eigenvalues()(0) + level; ++i) {
+      here += eigen_.eigenvectors().col(i).dot(load) * eigen_.eigenvectors().col(i);
+    }
+    here.normalize();
+    double curvature = here.dot(pivot * here);
+    if (!(here.norm() > 0.5) || (curvature > 0 && eigen_.eigenvalues()(0) < 0)) {
+      here = eigen_.eigenvectors().col(0);
+      curvature = eigen_.eigenvalues()(0);
+    }
+    Eigen::Map<Segment>(v + j * stride, q_) = here;
     for (Eigen::Index i = j - 1; i >= 1; --i) {
       Eigen::Map<Segment>(v + i * stride, q_).noalias() =
           -(block_of(link_, i) * Eigen::Map<const Segment>(v + (i + 1) * stride, q_));
     }
     for (Eigen::Index e = 0; e <= j; ++e) back_substitute(e, v, 0);
-    return eigen_.eigenvalues()(0);
+    return curvature;
   }
 
   /// Inner unknowns of element e from those at its ends; `load` is 0 for a homogeneous system, else 1.

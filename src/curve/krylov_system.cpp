@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -13,10 +14,19 @@ namespace {
 /// behind is the square of this part of what the exact step gains.
 constexpr double kForcing = 1e-3;
 constexpr int kMostSteps = 400;
+/// ... and the residual that rounding allows, relative to the curve in the norm of its stiffness.
+constexpr double kExact = 1e-15;
+/// A least eigenvalue below this is rounding.
+constexpr double kLeast = 1e-13;
+/// Below this it counts as soft.
+constexpr double kLevel = 1e-4;
+/// How much more the gradient counts in a start vector than random numbers.
+constexpr double kDownhill = 10;
 /// Directions of less curvature than this, relative to their stiffness, are neutral (ends that are conjugate).
 constexpr double kNeutral = 1e-7;
 constexpr int kLeastLanczosSteps = 12;
 constexpr int kMostLanczosSteps = 240;
+constexpr int kLookEvery = 8;  // looks at k eigenvalues cost k^3: the next one after a step in so many
 /// A link this weak is rounding: the vectors so far span everything the start has parts in.
 constexpr double kExhausted = 1e-9;
 
@@ -27,7 +37,8 @@ KrylovSystem::KrylovSystem(Index dim, Index codim) : d_(dim), k_(codim), scratch
 void KrylovSystem::resize(const Curve& curve) {
   num_negative_ = 0;
   conclusive_ = false;
-  negative_curvature_ = 0;
+  has_negative_ = false;
+  least_left_ = std::numeric_limits<double>::infinity();
   const Index n = curve.num_nodes();
   normals_.resize(d_ * k_, n);
   for (Nodes* field : {&right_, &y_, &residual_, &direction_, &product_, &scaled_, &negative_}) field->setZero(d_, n);
@@ -110,14 +121,16 @@ bool KrylovSystem::factor(const Curve& curve, Evaluator& evaluator, bool curvatu
   if (curvature) {
     num_negative_ = 0;
     conclusive_ = false;
-    negative_curvature_ = 0;
+    has_negative_ = false;
   }
   y_.setZero();
   r = right_;
   precondition(stiffness_, r, z);
   s = z;
   double rz = dot(r, z);
-  const double goal = kForcing * kForcing * rz;
+  const double enough = kForcing * kForcing * rz;
+  const double rounding = kExact * kExact * curve.apply_stiffness(curve.x, product_, scratch_);
+  const double goal = std::max(std::min(enough, least_left_), std::min(enough, rounding));
   for (int step = 0; step < kMostSteps && rz > goal; ++step) {
     apply(curve, evaluator, curvature, s, product_);
     const double bend = dot(s, product_);
@@ -125,8 +138,7 @@ bool KrylovSystem::factor(const Curve& curve, Evaluator& evaluator, bool curvatu
     if (bend <= 0) {
       if (definite) {
         negative_ = s;
-        curve.apply_stiffness(s, product_, scratch_);
-        negative_curvature_ = bend / dot(s, product_);
+        has_negative_ = true;
         num_negative_ = 1;
         return false;
       }
@@ -141,7 +153,8 @@ bool KrylovSystem::factor(const Curve& curve, Evaluator& evaluator, bool curvatu
     s = z + (next / rz) * s;
     rz = next;
   }
-  return rz <= goal;
+  left_ = rz;
+  return rz <= enough;
 }
 
 double KrylovSystem::solve(Nodes& step) const {
@@ -149,9 +162,19 @@ double KrylovSystem::solve(Nodes& step) const {
   return -dot(right_, y_);
 }
 
-bool KrylovSystem::find_negative_direction(const Curve& /*curve*/) const { return negative_curvature_ < -kNeutral; }
+SoftDirection KrylovSystem::soft_direction(const Curve& curve, Evaluator& evaluator) {
+  if (!has_negative_) return {};
+  SoftDirection soft;
+  soft.found = true;
+  soft.longest = std::sqrt(negative_.colwise().squaredNorm().maxCoeff());
+  soft.slope = std::abs(dot(right_, negative_));
+  soft.stiffness = curve.apply_stiffness(negative_, product_, scratch_);
+  apply(curve, evaluator, true, negative_, product_);
+  soft.curvature = dot(negative_, product_);
+  return soft;
+}
 
-void KrylovSystem::negative_step(Nodes& step) const {
+void KrylovSystem::soft_step(Nodes& step) const {
   step = negative_;
   if (dot(right_, negative_) < 0) step = -step;
 }
@@ -181,6 +204,14 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
     project(u);
     restrict_fields(curve, fields, u);
     precondition(stiffness, u, v);
+    if (direction != nullptr) {  // of several eigenvectors rather the one that leads down
+      precondition(stiffness, right_, next);
+      const double slope = dot(right_, next);
+      if (slope > 0) {
+        u += kDownhill * std::sqrt(dot(u, v) / slope) * right_;
+        precondition(stiffness, u, v);
+      }
+    }
     double size = std::sqrt(dot(u, v));
     if (!(size > 0)) {
       result.value = 1;
@@ -193,6 +224,7 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
     double link = 0;
     const int most = pass == 0 ? kMostLanczosSteps : static_cast<int>(alpha.size());
     if (pass == 1) direction->setZero(d_, n);
+    int next_look = kLeastLanczosSteps;
     for (int step = 0; step < most; ++step) {
       if (pass == 1) *direction += eigen.eigenvectors()(step, 0) * v;
       apply(curve, evaluator, true, v, product_);
@@ -207,7 +239,8 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
       const bool exhausted = !(link > kExhausted);
       if (pass == 0) {
         const auto size_now = static_cast<Index>(alpha.size());
-        if (exhausted || step + 1 >= kLeastLanczosSteps || step + 1 == most) {
+        if (exhausted || step + 1 >= next_look || step + 1 == most) {
+          next_look = step + 1 + (step + 1) / kLookEvery;
           eigen.computeFromTridiagonal(Eigen::Map<const Vector>(alpha.data(), size_now),
                                        Eigen::Map<const Vector>(beta.data(), size_now - 1));
           result.value = eigen.eigenvalues()(0);
@@ -233,19 +266,24 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
   return result;
 }
 
-bool KrylovSystem::confirm_minimum(const Curve& curve, Evaluator& evaluator) {
-  Lowest found = lowest(curve, evaluator, Fields::all, nullptr);
+Confirmation KrylovSystem::confirm_minimum(const Curve& curve, Evaluator& evaluator, double energy) {
+  const Lowest found = lowest(curve, evaluator, Fields::all, nullptr);
   conclusive_ = found.conclusive;
   num_negative_ = found.num_negative;
-  if (found.num_negative == 0) {
-    resolved_ = lowest(curve, evaluator, Fields::within_elements, nullptr).value > 0;
-    return true;
+  if (num_negative_ == 0) resolved_ = lowest(curve, evaluator, Fields::within_elements, nullptr).value > 0;
+  if (found.value > kLeast) {
+    const double most = 2 * found.value * energy;  // r . M r of a solution that leaves no more than this energy
+    if (left_ > most && least_left_ > most) {
+      least_left_ = most;
+      return Confirmation::too_coarse;
+    }
   }
+  if (found.value > kLevel) return Confirmation::minimum;
   Nodes direction;
   (void)lowest(curve, evaluator, Fields::all, &direction);
   negative_ = std::move(direction);
-  negative_curvature_ = found.value;
-  return false;
+  has_negative_ = true;
+  return Confirmation::soft;
 }
 
 void KrylovSystem::bends(const Curve& curve, Evaluator& evaluator, const Nodes& step, Eigen::VectorXd& result) {

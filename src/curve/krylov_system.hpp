@@ -41,11 +41,14 @@ class KrylovSystem {
   bool factor(const Curve& curve, Evaluator& evaluator, bool curvature, bool definite);
   double solve(Nodes& step) const;
 
-  [[nodiscard]] bool find_negative_direction(const Curve& curve) const;
-  void negative_step(Nodes& step) const;
+  /// A direction in which the energy falls or hardly changes, where the last `factor` or `confirm_minimum` met one.
+  [[nodiscard]] SoftDirection soft_direction(const Curve& curve, Evaluator& evaluator);
+  /// That direction, downhill.
+  void soft_step(Nodes& step) const;
 
-  /// Looks for a direction in which the energy falls that conjugate gradients did not meet. False when there is one.
-  bool confirm_minimum(const Curve& curve, Evaluator& evaluator);
+  /// Looks for a direction in which the energy falls, or hardly changes, that conjugate gradients did not meet, and
+  /// whether they went far enough: what they left may be worth more than `energy` where the least eigenvalue is small.
+  Confirmation confirm_minimum(const Curve& curve, Evaluator& evaluator, double energy);
   /// After confirm_minimum: no direction of negative curvature, and the search for one was conclusive.
   [[nodiscard]] bool minimum() const { return num_negative_ == 0 && conclusive_; }
   /// Different negative eigenvalues seen: equal ones count once.
@@ -80,9 +83,11 @@ class KrylovSystem {
   Nodes right_, y_, residual_, direction_, product_, scaled_, negative_;
   Eigen::VectorXd scratch_;
   mutable Eigen::VectorXd overlap_;
-  BandedCholesky stiffness_;       // K of the inner nodes
-  BandedCholesky inside_;          // the same without the element ends
-  double negative_curvature_ = 0;  // of negative_, relative to its stiffness
+  BandedCholesky stiffness_;   // K of the inner nodes
+  BandedCholesky inside_;      // the same without the element ends
+  bool has_negative_ = false;  // negative_ is one
+  double left_ = 0;            // r . M r of the last solution
+  double least_left_ = 0;      // go on down to this
   int num_negative_ = 0;
   bool conclusive_ = false;
   bool resolved_ = true;

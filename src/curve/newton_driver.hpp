@@ -67,6 +67,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
   static constexpr int kMaxCycles = 14;
+  static constexpr double kSoftRounding = 1e-11;  // of the length: differences along neutral directions below
   static constexpr double kTooWeak = 3e-5;       // gradients, of the strongest: the second variation says nothing below
   static constexpr double kShortestDip = 1e-5;   // of the whole: how closely a near singular point is looked at...
   static constexpr double kDipTolerance = 1e-5;  // ... when asked for no less than this
@@ -355,6 +356,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       const double gain = kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
       result.length_error += std::max(4 * gain, 0.25 * options_.tolerance * check_.length);
     }
+    result.length_error += soft_error();
     if (outcome != Relaxation::converged) result.length_error = std::max(result.length_error, 1e-6 * check_.length);
     for (const double off : check_.element_off) {  // where the curve cuts a corner
       if (off > surface_limit()) result.length_error += 2 * off;
@@ -385,6 +387,11 @@ class NewtonDriver : public NewtonSolver::Backend {
         return std::nullopt;
       }
     }
+  }
+
+  // What may be left to gain along curves of nearly the same length (ends that are nearly conjugate), model units.
+  [[nodiscard]] double soft_error() const {
+    return kernel_.soft_energy() * kernel_.period() / std::max(check_.length, 1e-300);
   }
 
   // What the end points' own rounding does to the length, and ours: no tolerance asks for less.
@@ -419,6 +426,8 @@ class NewtonDriver : public NewtonSolver::Backend {
       result.reason = "an end of the path is not on the surface: project it first";
     } else if (check_.off_surface > surface_limit()) {
       result.reason = "the curve leaves the surface between its nodes";
+    } else if (soft_error() > std::max(options_.tolerance, kSoftRounding) * result.length) {
+      result.reason = "curves beside this one are as long to more digits than can be told (ends nearly conjugate)";
     } else if (check_.length_error > options_.tolerance * result.length) {
       result.reason = nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
                                  : "the tolerance was not met with the elements allowed";

@@ -95,6 +95,8 @@ class NewtonKernel {
   [[nodiscard]] Index num_evaluated() const { return evaluated_; }
   /// Did the last relaxation end with a full Newton step: then what is left is of second order in decrement().
   [[nodiscard]] bool settled() const { return settled_; }
+  /// Energy that may be left to gain along a direction in which it hardly changes.
+  [[nodiscard]] double soft_energy() const { return soft_energy_; }
   void reset_counters() {
     iterations_ = 0;
     evaluated_ = 0;
@@ -118,39 +120,76 @@ class NewtonKernel {
     if (outcome != Relaxation::converged) return outcome;
     const double start_energy = energy_;
     double push = 0.03;
-    for (int count = 0; count < goal.max_iterations; ++count) {
+    bool sunk = false;
+    const int last = iterations_ + goal.max_iterations;
+    while (iterations_ < last) {
       context.check_cancelled();
       ++iterations_;
       settled_ = false;
+      soft_energy_ = 0;
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
       system_.linearise(evaluator, curve_, frame_);
+      const double worthless = std::max(goal.energy, 4e-16) * energy_;
       definite_ = system_.factor(curve_, evaluator, true, true);
       bool descend = true;  // towards a minimum: the energy has to fall
-      bool negative = false;
+      SoftDirection soft;
       if (!definite_) {
-        negative = system_.find_negative_direction(curve_);
+        soft = system_.soft_direction(curve_, evaluator);
         descend = goal.minimum || system_.minimum() || !system_.factor(curve_, evaluator, true, false);
         if (descend && !system_.factor(curve_, evaluator, false, true)) return Relaxation::stalled;
       }
       const double slope = system_.solve(step_);
       decrement_ = 0.5 * std::abs(slope);
-      const bool flat = decrement_ <= std::max(goal.energy, 4e-16) * energy_;
-      if (flat && !negative && !system_.confirm_minimum(curve_, evaluator)) {
-        definite_ = false;
-        descend = goal.minimum;
-        negative = system_.find_negative_direction(curve_);
+      const bool flat = decrement_ <= worthless;
+      if (flat && definite_) {
+        const Confirmation found = system_.confirm_minimum(curve_, evaluator, worthless);
+        if (found == Confirmation::too_coarse) continue;
+        if (found == Confirmation::soft) {
+          soft = system_.soft_direction(curve_, evaluator);
+          if (soft.curvature <= 0) {
+            definite_ = false;
+            descend = goal.minimum;
+          }
+        }
       }
-      if (negative && goal.minimum && decrement_ <= 1e-3 * energy_) {
+      const bool negative = soft.relative() < -kNeutral;
+      const bool level = soft.found && std::abs(soft.relative()) < kLevel && degree() > 1 && goal.minimum;
+      if (level && decrement_ <= kInValley * energy_ && !sunk) {
+        // Curvatures as small as that are known only from a curve on the floor of the valley.
+        sunk = true;
+        sink(evaluator);
+        continue;
+      }
+      if (level && decrement_ <= kInValley * energy_ && !definite_) {
+        soft_energy_ = energy_along(soft);
+        if (soft_energy_ > worthless) {
+          system_.soft_step(step_);
+          step_ *= kReach * length() / soft.longest;
+          sunk = false;
+          if (slide(evaluator)) continue;
+          sunk = true;
+          if (!system_.factor(curve_, evaluator, false, true)) return Relaxation::stalled;
+        }
+        if (flat) (void)system_.confirm_minimum(curve_, evaluator, worthless);
+        system_.solve(step_);
+      } else if (negative && goal.minimum && decrement_ <= kInValley * energy_) {
         if (leave_saddle(evaluator, slope, push)) continue;
-        if (flat) return Relaxation::saddle;
         system_.solve(step_);
       }
+      if (flat && negative && goal.minimum) return Relaxation::saddle;
       if (flat) {
         // Along a nearly neutral direction (conjugate ends) even a worthless step is long: then only go to the surface.
         const double longest = step_.colwise().norm().maxCoeff();
+        const bool short_step = longest * longest <= goal.off_surface * period_;
+        if (definite_ && !short_step && !sunk && degree() > 1 && goal.minimum &&
+            2 * decrement_ < kLevel * curve_.apply_stiffness(step_, old_normal_, vector_)) {
+          sunk = true;
+          sink(evaluator);
+          continue;
+        }
         if (off_surface_ <= goal.off_surface) {
           curve_.x = base_;
-          settled_ = (definite_ || !descend) && longest * longest <= goal.off_surface * period_;
+          settled_ = (definite_ || !descend) && short_step;
           if (settled_) curve_.x += step_;
           return Relaxation::converged;
         }
@@ -161,7 +200,17 @@ class NewtonKernel {
           continue;
         }
       }
-      if (search(evaluator, slope, !descend)) continue;
+      const bool valley = definite_ && descend && degree() > 1 && decrement_ <= kInValley * energy_;
+      const bool fresh = sunk;
+      sunk = false;
+      if (search(evaluator, slope, !descend, valley ? kFewHalvings : kMostHalvings)) continue;
+      if (valley) {
+        step_ = trial_step_;
+        restore(evaluator);
+        if (slide(evaluator)) continue;
+        sunk = fresh;
+        if (search(evaluator, slope, !descend, kMostHalvings)) continue;
+      }
       if (flat) return Relaxation::converged;
       // Close to a conjugate point a Newton step can be too long to be of use; shortening still is.
       if (!definite_ || !descend || !shorten(evaluator, goal)) return failure_;
@@ -170,6 +219,14 @@ class NewtonKernel {
   }
 
  private:
+  static constexpr double kNeutral = 1e-7;   // of the stiffness: curvature below is that of (nearly) conjugate ends
+  static constexpr double kReach = 0.25;     // of the length: how far curves are looked for along a soft direction
+  static constexpr double kInValley = 1e-3;  // of the energy: where all but soft directions have settled
+  static constexpr double kLevel = 1e-4;     // of the stiffness: curvature below is known only close to the geodesic
+  static constexpr double kExact = 1e-24;    // of the energy
+  static constexpr int kMostSinking = 30;
+  static constexpr int kMostHalvings = 30;
+  static constexpr int kFewHalvings = 2;
   static constexpr double kMostTurn = 0.7;  // radians a node may move around its surface in one step
 
   // F, J (and what the system wants) at the nodes.
@@ -233,21 +290,75 @@ class NewtonKernel {
 
   // One Sobolev step from where the last search began. False when that, too, leads nowhere.
   bool shorten(Evaluator& evaluator, const RelaxationGoal& goal) {
-    curve_.x = trial_base_;
-    visit(evaluator);
-    if (!measure()) return false;
+    if (!restore(evaluator)) return false;
     system_.linearise(evaluator, curve_, frame_);
     if (!system_.factor(curve_, evaluator, false, true)) return false;
     const double slope = system_.solve(step_);
     decrement_ = 0.5 * std::abs(slope);
-    if (search(evaluator, slope, false)) return true;
+    if (search(evaluator, slope, false, kMostHalvings)) return true;
     if (decrement_ <= std::max(goal.energy, 4e-16) * trial_energy_) failure_ = Relaxation::converged;
+    return false;
+  }
+
+  // Back to where the last search began.
+  bool restore(Evaluator& evaluator) {
+    curve_.x = trial_base_;
+    visit(evaluator);
+    return measure();
+  }
+
+  // What curves may gain along a soft direction (of step_'s size unless the system has found it), within their length.
+  double energy_along(const SoftDirection& soft) {
+    if (soft.longest <= 0) return 0;
+    const double reach = length() / soft.longest;
+    return reach * soft.slope + reach * reach * std::abs(soft.curvature) / 2;
+  }
+
+  // Shortening steps to the floor of a valley, until they gain no less than the one before: only the way along it is
+  // left.
+  void sink(Evaluator& evaluator) {
+    double before = std::numeric_limits<double>::infinity();
+    int standing = 0;
+    for (int step = 0; step < kMostSinking; ++step) {
+      ++iterations_;
+      system_.linearise(evaluator, curve_, frame_);
+      if (!system_.factor(curve_, evaluator, false, true)) return;
+      const double slope = system_.solve(step_);
+      if (step > 2 && std::abs(slope) > 0.7 * before) ++standing;
+      if (standing > 2 || std::abs(slope) <= kExact * energy_ || !search(evaluator, slope, false, kMostHalvings))
+        return;
+      before = std::abs(slope);
+    }
+  }
+
+  // Along a valley whose floor is nearly level the energy tells nothing of a step: bending away from the floor costs
+  // more than is to be gained. A long way along step_, then back to the floor by shortening steps, and only then the
+  // energies are compared. False, and the curve where it was, when no length of step leads down.
+  bool slide(Evaluator& evaluator) {
+    const double longest = step_.colwise().norm().maxCoeff();
+    if (!(longest > 0) || degree() == 1) return false;
+    const Nodes origin = curve_.x;
+    const Nodes along = step_;
+    const double before = energy_;
+    double size = std::min(1.0, kReach * length() / longest);
+    for (int attempt = 0; attempt < 4; ++attempt, size /= 4) {
+      step_ = size * along;
+      if (search(evaluator, 0, true, kMostHalvings)) {
+        sink(evaluator);
+        if (energy_ < before - 2e-15 * before) return true;
+      }
+      curve_.x = origin;
+      visit(evaluator);
+      if (!measure()) return false;
+      system_.linearise(evaluator, curve_, frame_);
+    }
+    step_ = along;
     return false;
   }
 
   // x = base_ + alpha step_, halving alpha until the energy falls enough and no node has left its sheet. `free`
   // accepts any energy (a step towards a saddle).
-  bool search(Evaluator& evaluator, double slope, bool free) {
+  bool search(Evaluator& evaluator, double slope, bool free, int most_halvings) {
     const double energy = energy_;
     trial_energy_ = energy_;
     const double off = off_surface_;
@@ -257,7 +368,7 @@ class NewtonKernel {
     const double longest = trial_step_.colwise().norm().maxCoeff();
     double alpha = std::min({1.0, 0.25 * length() / std::max(longest, 1e-300), largest_step(evaluator)});
     failure_ = Relaxation::stalled;
-    for (int halving = 0; halving < 30; ++halving, alpha /= 2) {
+    for (int halving = 0; halving < most_halvings; ++halving, alpha /= 2) {
       curve_.x = trial_base_ + alpha * trial_step_;
       visit(evaluator);
       if (!measure()) {
@@ -304,12 +415,12 @@ class NewtonKernel {
 
   // Goes down along the negative direction, by steps that grow while they succeed.
   bool leave_saddle(Evaluator& evaluator, double slope, double& push) {
-    system_.negative_step(step_);
+    system_.soft_step(step_);
     const double longest = step_.colwise().norm().maxCoeff();
     if (!(longest > 0)) return false;
     step_ *= push * length() / longest;
     const double before = energy_;
-    if (!search(evaluator, 0, false)) return false;
+    if (!search(evaluator, 0, false, kMostHalvings)) return false;
     push = std::min(0.2, 2 * push);
     return energy_ < before - 1e-13 * before || slope < -1e-13 * before;
   }
@@ -335,6 +446,7 @@ class NewtonKernel {
   Index evaluated_ = 0;
   bool definite_ = false;
   bool settled_ = false;
+  double soft_energy_ = 0;
   bool regular_ends_ = false;
   double ends_off_ = 0;
   Relaxation failure_ = Relaxation::stalled;

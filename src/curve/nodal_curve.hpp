@@ -8,6 +8,23 @@
 
 namespace taut::detail {
 
+/// A field v along a curve in which its energy falls or hardly changes: what a system found out about it.
+struct SoftDirection {
+  bool found = false;
+  double slope = 0;      ///< |dE v|, at least 0
+  double curvature = 0;  ///< v^T A v
+  double stiffness = 1;  ///< v^T K v
+  double longest = 0;    ///< max |v|
+  [[nodiscard]] double relative() const { return curvature / stiffness; }
+};
+
+/// What a second look at a matrix found that had no failing pivot.
+enum class Confirmation {
+  minimum,
+  soft,        ///< there is a direction in which the energy falls, or hardly changes
+  too_coarse,  ///< the last solution is not exact enough to tell: factor again
+};
+
 /// A curve on a mesh of elements in a row, and what the last visit found at its nodes: what the parts of Newton's
 /// method share. D and K are the sizes d and k at compile time, or Eigen::Dynamic.
 template <int D, int K>

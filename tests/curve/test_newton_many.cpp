@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -120,6 +121,38 @@ TEST(NewtonMany, FindsTheHiddenDirectionThatLeavesAGreatCircle) {
   ASSERT_EQ(left.status, Status::ok) << left.reason;
   EXPECT_NEAR(left.length, angle, 1e-10);
   EXPECT_TRUE(left.locally_shortest);
+}
+
+// Half great circles turned about an axis that nearly joins the ends are all nearly as long and nearly geodesics: the
+// energy is a valley with a level floor. Turned by half a turn it is exactly a saddle.
+TEST(NewtonMany, NearlyAntipodalEndsFromATurnedHalfCircle) {
+  std::mt19937_64 random(kSeed);
+  for (const Index dim : {3, 4, 20, 50}) {
+    const Surface sphere = ellipsoid(Vector::Ones(dim));
+    for (const double gap : {1e-4, 1e-7, 1e-8, 1e-10, 1e-15}) {
+      const Vector p = random_unit(dim, random);
+      Vector side = random_unit(dim, random);
+      side = (side - side.dot(p) * p).normalized();
+      const Vector q = (std::sin(gap) * side - std::cos(gap) * p).normalized();
+      const double angle = 2 * std::atan2((p - q).norm(), (p + q).norm());
+      Vector other = random_unit(dim, random);
+      other -= other.dot(p) * p + other.dot(side) * side;
+      other.normalize();
+      for (const double turn : {1.6, std::numbers::pi}) {
+        Points path = arc(p, std::cos(turn) * side + std::sin(turn) * other, angle);
+        path.col(20) = q;
+        for (const double tolerance : {1e-6, 1e-9, 1e-12}) {
+          const NewtonResult result = correct_newton(sphere, path, {.tolerance = tolerance});
+          ASSERT_EQ(result.status, Status::ok)
+              << result.reason << ", d = " << dim << ", gap " << gap << ", turn " << turn << ", " << tolerance;
+          EXPECT_LE(std::abs(result.length - angle), result.length_error + 2e-15)
+              << dim << ", gap " << gap << ", turn " << turn << ", " << tolerance;
+          EXPECT_LE(result.length_error, std::max(tolerance, 1e-11) * angle * 1.3)
+              << dim << ", " << gap << ", " << turn;
+        }
+      }
+    }
+  }
 }
 
 TEST(NewtonMany, TheCertificateTurnsAtTheAntipode) {
