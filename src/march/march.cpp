@@ -5,8 +5,8 @@
 
 #include "march/methods.hpp"
 #include "march/point_normals.hpp"
-#include "march/start.hpp"
 #include "march/tangent_frame.hpp"
+#include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -22,7 +22,7 @@ Points checked_normals(const Surface& surface, const PointsIn& x, const std::str
   Points normals = detail::normals_at(surface, x);
   for (Index j = 0; j < x.cols(); ++j) {
     if (!normals.col(j).allFinite()) {
-      throw SingularPoint(name + " " + detail::describe_point(x.col(j)) + " is a singular point of the surface");
+      throw SingularPoint(name + " " + detail::describe(x.col(j)) + " is a singular point of the surface");
     }
   }
   return normals;
@@ -37,6 +37,7 @@ DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn&
     throw InvalidArgument("dimension " + std::to_string(surface.dim()) + ": cells are marched up to dimension " +
                           std::to_string(detail::kMaxMarchDim));
   }
+  if (!(options.radius >= 0)) throw InvalidArgument("the march's radius must be a length >= 0");
   if (sources.cols() == 0) throw InvalidArgument("no source given");
   DistanceField field;
   field.method = options.method;

@@ -1,15 +1,11 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
-
-/// "(1, 0, 0.5)", for messages.
-[[nodiscard]] std::string describe_point(const VectorIn& x);
 
 /// The valid cells of the block around a source. Throws InvalidArgument when there is none.
 [[nodiscard]] std::vector<Index> cells_around_source(const SurfaceCells& cells, const VectorIn& source);

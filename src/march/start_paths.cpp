@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 #include <utility>
 
+#include "core/disjoint_sets.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
 #include "march/stencil.hpp"
@@ -58,33 +58,13 @@ std::vector<BandCell> slice(const SurfaceCells& cells, const DistanceField& from
   return band;
 }
 
-/// The hollows of s on a slice while it is flooded from below: sets of cells, each with its lowest cell.
-class Hollows {
- public:
-  explicit Hollows(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), std::size_t{0}); }
-
-  /// The lowest cell of the hollow that cell b belongs to. Cells are numbered from the lowest up.
-  std::size_t lowest(std::size_t b) {
-    while (parent_[b] != b) b = parent_[b] = parent_[parent_[b]];
-    return b;
-  }
-  void join(std::size_t a, std::size_t b) {
-    a = lowest(a);
-    b = lowest(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 /// The lowest cell of every hollow at least `depth` deep, lowest first. A hollow ends where it runs over into a lower
 /// one. `place`: a cell's number in the band; all -1 before and after.
 template <int D, int K>
 std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<BandCell>& band, double depth,
                                  std::vector<std::int32_t>& place) {
   const Index d = cells.dim();
-  Hollows flood(band.size());
+  DisjointSets flood(band.size());  // cells are numbered from the lowest up: a hollow is known by its lowest
   std::vector<std::uint8_t> deep(band.size(), 0);
   Stencil stencil(d);
   Edge<D> edge;
@@ -95,18 +75,16 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<Ba
     for (const Index j : stencil.block(cells.grid(), cells.grid().cell(i))) {
       const std::int32_t other = place[static_cast<std::size_t>(j)];
       if (other < 0 || j == i || !make_edge<D, K>(point(j), point(i), d, cells.codim(), edge)) continue;
-      const std::size_t a = flood.lowest(static_cast<std::size_t>(other));
-      const std::size_t c = flood.lowest(b);
-      if (a == c) continue;
+      const std::uint32_t a = flood.find(static_cast<std::uint32_t>(other));
+      const std::uint32_t c = flood.find(static_cast<std::uint32_t>(b));
       const std::size_t higher = std::max(a, c);
-      if (band[b].length - band[higher].length >= depth) deep[higher] = 1;
-      flood.join(a, c);
+      if (flood.unite(a, c) && band[b].length - band[higher].length >= depth) deep[higher] = 1;
     }
   }
   std::vector<std::size_t> found;
   for (std::size_t b = 0; b < band.size(); ++b) {
     place[static_cast<std::size_t>(band[b].cell)] = -1;
-    if (deep[b] != 0 || flood.lowest(b) == b) found.push_back(b);
+    if (deep[b] != 0 || flood.find(static_cast<std::uint32_t>(b)) == b) found.push_back(b);
   }
   return found;
 }

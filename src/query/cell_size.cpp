@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "cells/normal_turn.hpp"
 #include "surface/rbf/kd_tree.hpp"
 #include "taut/cells/surface_cells.hpp"
 
@@ -19,7 +20,6 @@ constexpr double kMostCellsPerSide = 160;
 /// Distance to the k-th neighbour tells the density; the nearest alone is fooled by overlapping scans.
 constexpr Index kNeighbour = 6;
 constexpr Index kProbes = 400;
-/// The normals of a flat body turn at its rim only.
 
 /// Typical distance between neighbouring samples of a surface (two-dimensional for d = 3): on average k of them lie
 /// within r_k, so the area a sample stands for is pi r_k^2 / k.
@@ -55,7 +55,6 @@ double cell_size_for_samples(const PointCloud& samples) {
 double normal_turn(const SurfaceCells& cells, double quantile) {
   const CellGrid& grid = cells.grid();
   const auto d = static_cast<std::size_t>(cells.dim());
-  const double k = static_cast<double>(cells.codim());
   std::vector<double> turns;
   std::vector<std::int32_t> next(d);
   for (Index i = 0; i < cells.num_cells(); ++i) {
@@ -65,9 +64,7 @@ double normal_turn(const SurfaceCells& cells, double quantile) {
       ++next[axis];
       const Index j = grid.find(next);
       if (j == CellGrid::kNone || !cells.valid(j)) continue;
-      const Eigen::MatrixXd shared = cells.normals(i).transpose() * cells.normals(j);
-      turns.push_back(cells.codim() == 1 ? std::acos(std::clamp(shared(0), -1.0, 1.0))
-                                         : std::asin(std::sqrt(std::clamp(k - shared.squaredNorm(), 0.0, 1.0))));
+      turns.push_back(normal_turn(cells, i, j));
     }
   }
   if (turns.empty()) return 0;

@@ -4,7 +4,7 @@
 #include <random>
 #include <utility>
 
-#include "query/random_direction.hpp"
+#include "core/random.hpp"
 #include "query/sample_graph.hpp"
 #include "query/surface_walker.hpp"
 #include "query/tree_search.hpp"

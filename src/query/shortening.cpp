@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
 #include <utility>
+
+#include "core/random.hpp"
 
 namespace taut::detail {
 namespace {
@@ -211,17 +214,13 @@ Shortening::Outcome Shortening::run(double settle, const Context& context) {
 }
 
 void Shortening::disturb(int round) {
-  std::mt19937 random(static_cast<unsigned>(round));
-  std::normal_distribution<double> normal;
+  std::mt19937_64 random(static_cast<std::uint64_t>(round));
   const Index n = strand_.num_points();
   Points move = Points::Zero(strand_.points.rows(), n);
   for (int wave = 1; wave <= 3; ++wave) {
-    Vector sine(strand_.points.rows());
-    Vector cosine(strand_.points.rows());
-    for (Index c = 0; c < sine.size(); ++c) {
-      sine(c) = normal(random);
-      cosine(c) = strand_.closed ? normal(random) : 0;
-    }
+    const Vector sine = random_direction(strand_.points.rows(), random);
+    Vector cosine = Vector::Zero(sine.size());
+    if (strand_.closed) cosine = random_direction(sine.size(), random);
     for (Index i = 0; i < n; ++i) {
       const double angle = std::numbers::pi * (strand_.closed ? 2 * (wave - 1) : wave) * static_cast<double>(i) /
                            static_cast<double>(n - (strand_.closed ? 0 : 1));

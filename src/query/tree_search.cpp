@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "query/random_direction.hpp"
+#include "core/random.hpp"
 
 namespace taut::detail {
 namespace {

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/random.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -86,7 +87,7 @@ class Checker {
   }
 
  private:
-  double uniform() { return static_cast<double>(random_() >> 11) * 0x1p-53; }
+  double uniform() { return detail::random_share(random_); }
 
   Vector random_point(const Box& box) {
     Vector x(d_);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "core/random.hpp"
 #include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 
@@ -24,11 +25,12 @@ constexpr double kElsewhere = 0.02;
 constexpr double kFarther = 5;
 constexpr int kSeeds = 24;
 
-double uniform(std::mt19937_64& random) { return 2 * std::ldexp(static_cast<double>(random() >> 11), -53) - 1; }
+/// Uniform in [-1, 1).
+double either_way(std::mt19937_64& random) { return 2 * detail::random_share(random) - 1; }
 
 Vector random_step(Index dim, double size, std::mt19937_64& random) {
   Vector step(dim);
-  for (double& c : step) c = uniform(random);
+  for (double& c : step) c = either_way(random);
   return size * step.normalized();
 }
 
@@ -183,10 +185,14 @@ std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, con
 }
 
 std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, const Box& box) {
+  if (box.lower.size() != function.dim() || box.upper.size() != function.dim()) {
+    throw InvalidArgument("the box to diagnose in has " + std::to_string(box.dim()) + " dimensions, the surface " +
+                          std::to_string(function.dim()));
+  }
   std::mt19937_64 random(7);
   for (int i = 0; i < kSeeds; ++i) {
     Vector x = (box.lower + box.upper) / 2;
-    for (Index c = 0; c < x.size(); ++c) x(c) += 0.45 * uniform(random) * (box.upper(c) - box.lower(c));
+    for (Index c = 0; c < x.size(); ++c) x(c) += 0.45 * either_way(random) * (box.upper(c) - box.lower(c));
     if (!descend_to_surface(function, x)) continue;
     if (auto found = diagnose_rank(function, VectorIn(x)); found && found->everywhere) return found;
     return std::nullopt;  // a regular point of the surface
@@ -229,7 +235,7 @@ std::string RankDiagnosis::text() const {
     text += " (and " + std::to_string(more) + " more:";
     for (const Finding& finding : findings) {
       if (std::ranges::find(alike, finding.equation) != alike.end()) continue;
-      text += " " + std::to_string(finding.equation + 1);
+      text.append(" ").append(std::to_string(finding.equation + 1));
       if (finding.fault == Fault::dependent) text += " depends on " + counted(finding.others);
       text += finding.equation == findings.back().equation ? "" : ",";
     }

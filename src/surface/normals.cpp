@@ -5,12 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
@@ -62,12 +63,7 @@ Mesh merged_mesh(const PointCloud& cloud, const MergedPoints& merged) {
   for (Index f = 0; f < cloud.faces.cols(); ++f) {
     std::array<Index, 3> face{};
     for (int corner = 0; corner < 3; ++corner) {
-      const int vertex = cloud.faces(corner, f);
-      if (vertex < 0 || vertex >= cloud.size()) {
-        throw InvalidArgument("face " + std::to_string(f) + " names point " + std::to_string(vertex) + " of " +
-                              std::to_string(cloud.size()));
-      }
-      face[static_cast<std::size_t>(corner)] = merged.merged_to[static_cast<std::size_t>(vertex)];
+      face[static_cast<std::size_t>(corner)] = merged.merged_to[static_cast<std::size_t>(cloud.faces(corner, f))];
     }
     if (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]) mesh.faces.push_back(face);
   }
@@ -151,28 +147,6 @@ struct Edge {
   bool flips;  // the two ends' present signs disagree
 };
 
-class UnionFind {
- public:
-  explicit UnionFind(Index n) : parent_(static_cast<std::size_t>(n)) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index find(Index i) {
-    auto at = [&](Index k) -> Index& { return parent_[static_cast<std::size_t>(k)]; };
-    while (at(i) != i) i = at(i) = at(at(i));
-    return i;
-  }
-  bool unite(Index a, Index b) {
-    const Index root_a = find(a);
-    const Index root_b = find(b);
-    if (root_a == root_b) return false;
-    parent_[static_cast<std::size_t>(std::max(root_a, root_b))] = std::min(root_a, root_b);
-    return true;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
-
 /// Compares two unoriented normals across an edge: n_b is mirrored in the plane half-way, as on a circle through both
 /// points, then compared with n_a. Edges along a normal lead off the surface and come last.
 Edge compare(const Points& points, const Points& normals, Index a, Index b) {
@@ -198,10 +172,10 @@ std::vector<Index> orient_along_tree(const Points& points, const KdTree& tree, I
     if (x.weight != y.weight) return x.weight < y.weight;
     return std::pair(x.a, x.b) < std::pair(y.a, y.b);
   });
-  UnionFind joined(n);
+  detail::DisjointSets joined(static_cast<std::size_t>(n));
   std::vector<std::vector<std::pair<Index, bool>>> forest(static_cast<std::size_t>(n));
   for (const Edge& edge : edges) {
-    if (!joined.unite(edge.a, edge.b)) continue;
+    if (!joined.unite(static_cast<std::uint32_t>(edge.a), static_cast<std::uint32_t>(edge.b))) continue;
     forest[static_cast<std::size_t>(edge.a)].emplace_back(edge.b, edge.flips);
     forest[static_cast<std::size_t>(edge.b)].emplace_back(edge.a, edge.flips);
   }
@@ -271,11 +245,28 @@ void repair(const Points& points, Points& normals, const Context& context) {
   context.tell(std::to_string(unknown.size()) + " points without a usable normal took that of their neighbours");
 }
 
+/// Normals and faces that belong to the points.
+void require_consistent(const PointCloud& cloud) {
+  if (cloud.normals.cols() > 0 && (cloud.normals.rows() != cloud.dim() || cloud.normals.cols() != cloud.size())) {
+    throw InvalidArgument("the normals are " + std::to_string(cloud.normals.rows()) + " x " +
+                          std::to_string(cloud.normals.cols()) + ", the points " + std::to_string(cloud.dim()) + " x " +
+                          std::to_string(cloud.size()));
+  }
+  for (Index f = 0; f < cloud.faces.cols(); ++f) {
+    for (const int vertex : cloud.faces.col(f)) {
+      if (vertex >= 0 && vertex < cloud.size()) continue;
+      throw InvalidArgument("face " + std::to_string(f) + " names point " + std::to_string(vertex) + " of " +
+                            std::to_string(cloud.size()));
+    }
+  }
+}
+
 }  // namespace
 
 Points estimate_normals(const PointCloud& cloud, Index neighbours, const Context& context) {
   const Index d = cloud.dim();
   detail::require_finite(cloud.points, "point");
+  require_consistent(cloud);
   const MergedPoints merged = detail::merge_duplicates(cloud.points);
   const Index rank = detail::affine_rank(merged.points);
   if (d < 2 || rank < d - 1) {

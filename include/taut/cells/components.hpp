@@ -11,8 +11,8 @@ namespace taut {
 /// Which cells hang together, corners included (3^d - 1 neighbours).
 struct Components {
   static constexpr std::int32_t kNone = -1;
-  std::vector<std::int32_t>
-      label;  ///< by cell: its component, numbered in the order of their first cells; kNone = left out
+  /// By cell: its component, numbered in the order of their first cells; kNone = left out.
+  std::vector<std::int32_t> label;
   std::int32_t count = 0;
 };
 

@@ -14,7 +14,7 @@ struct MarchOptions {
   MarchMethod method = MarchMethod::convergent;
   /// Stop as soon as the distance at this point (d, on the surface) is final.
   std::optional<Vector> target = std::nullopt;
-  /// Leave out what lies farther away than this, model units.
+  /// Leave out what lies farther away than this, model units, >= 0.
   double radius = std::numeric_limits<double>::infinity();
 };
 
@@ -24,8 +24,8 @@ struct MarchOptions {
 ///
 /// Properties: 0 at a source; distance >= |p - q|; with several sources the minimum of the single fields; the same
 /// bits for the same input. Accuracy: docs/march.md. Cost: O(N 3^d + N log N); (d + 3) doubles a cell.
-/// Throws InvalidArgument when a source or target has the wrong dimension, is not finite, or no cell lies around a
-/// source; SingularPoint when the surface is singular there; OutOfMemory, Cancelled.
+/// Throws InvalidArgument when a source or target has the wrong dimension, is not finite, no cell lies around a
+/// source, or the radius is negative; SingularPoint when the surface is singular there; OutOfMemory, Cancelled.
 [[nodiscard]] DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources,
                                   const MarchOptions& options = {}, const Context& context = {});
 
