@@ -66,10 +66,10 @@ void find_neighbours(Index dim, const std::int32_t* cell, const std::vector<std:
 
 CellGrid::CellGrid(Vector origin, double size) : origin_(std::move(origin)), size_(size), slots_(kMinSlots, 0) {
   if (dim() < 1) throw InvalidArgument("a grid needs at least 1 dimension");
-  if (!origin_.allFinite()) throw InvalidArgument("the grid's origin is not finite");
   if (!(size > 0) || !std::isfinite(size)) {
     throw InvalidArgument("the cell size must be a positive length, not " + detail::describe(size));
   }
+  if (!origin_.allFinite()) throw InvalidArgument("the grid's origin is not finite");
   if (size < 64 * std::numeric_limits<double>::epsilon() * origin_.lpNorm<Eigen::Infinity>()) {
     throw InvalidArgument("cells of size " + detail::describe(size) + " cannot be told apart by rounding at " +
                           detail::describe(origin_) + ": take larger cells");

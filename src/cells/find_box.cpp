@@ -92,6 +92,7 @@ Box around(const PointsIn& near, Index d) {
 
 Box by_bounds(const Surface& surface, const PointsIn& near, const Context& context) {
   const Index d = surface.dim();
+  detail::check_halving(d);
   double reach = kReach;
   if (near.cols() > 0) reach = std::max(reach, 4 * near.lpNorm<Eigen::Infinity>());
   const Box everywhere = cube(Vector::Zero(d), reach);

@@ -38,6 +38,7 @@ CurveMesh mesh_curve(const Surface& surface, const CellGrid& grid, const MeshOpt
                           std::to_string(surface.codim()) + " in " + std::to_string(surface.dim()) +
                           ", the cells have " + std::to_string(grid.dim()));
   }
+  detail::check_mesh_size(grid);
   const auto num_cells = static_cast<std::size_t>(grid.num_cells());
   CellGrid numbers(grid.origin(), grid.size());
   std::vector<std::array<int, 4>> corners(num_cells);

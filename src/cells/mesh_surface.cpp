@@ -30,6 +30,7 @@ struct Corners {
 
 Corners collect_corners(const Surface& surface, const CellGrid& grid, const Context& context) {
   Corners corners;
+  detail::check_mesh_size(grid);
   CellGrid numbers(grid.origin(), grid.size());  // corners are numbered like cells
   const Index num_cells = grid.num_cells();
   corners.of_cell.resize(static_cast<std::size_t>(num_cells));

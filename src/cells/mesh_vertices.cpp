@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "core/parallel.hpp"
+#include "taut/core/error.hpp"
 
 namespace taut::detail {
 namespace {
@@ -148,6 +150,13 @@ bool step_to_edge(const Eigen::Ref<const Vector>& gradient, double value, const 
 }
 
 }  // namespace
+
+void check_mesh_size(const CellGrid& grid) {
+  constexpr Index kMostCells = std::numeric_limits<int>::max() / 8;
+  if (grid.num_cells() <= kMostCells) return;
+  throw OutOfMemory("a mesh is made of at most " + std::to_string(kMostCells) + " cells, not " +
+                    std::to_string(grid.num_cells()) + ": take larger cells");
+}
 
 Vector evaluate_values(const ImplicitFunction& function, const Points& points, const Context& context) {
   Vector values(points.cols());

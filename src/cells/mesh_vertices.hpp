@@ -9,6 +9,10 @@
 
 namespace taut::detail {
 
+/// Meshes number vertices by int, up to eight corners and four pieces a cell: throws OutOfMemory where that could
+/// overflow.
+void check_mesh_size(const CellGrid& grid);
+
 /// F at every point (d x n): n values.
 Vector evaluate_values(const ImplicitFunction& function, const Points& points, const Context& context);
 

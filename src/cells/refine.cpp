@@ -1,6 +1,9 @@
 #include "cells/refine.hpp"
 
 #include <algorithm>
+#include <string>
+
+#include "taut/core/error.hpp"
 
 namespace taut::detail {
 namespace {
@@ -8,6 +11,13 @@ namespace {
 constexpr Index kBoxesPerTest = 512;
 
 }  // namespace
+
+void check_halving(Index dim) {
+  constexpr Index kMostDimensions = 12;
+  if (dim <= kMostDimensions) return;
+  throw InvalidArgument("cells are halved in up to " + std::to_string(kMostDimensions) + " dimensions, not in " +
+                        std::to_string(dim));
+}
 
 void append_halves(Index dim, const std::int32_t* cells, Index n, std::vector<std::int32_t>& out) {
   const std::size_t begin = out.size();

@@ -29,6 +29,9 @@ class Refiner {
   const std::function<void()>* check_ = nullptr;
 };
 
+/// Throws InvalidArgument above d = 12, where the 2^d halves of a cell are too many to go through.
+void check_halving(Index dim);
+
 /// The 2^d halves of each of n cells, in Morton order, appended to `out`.
 void append_halves(Index dim, const std::int32_t* cells, Index n, std::vector<std::int32_t>& out);
 

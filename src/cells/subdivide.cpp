@@ -91,6 +91,7 @@ void require(const Surface& surface, const SubdivideOptions& options, const Box&
 
 CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, const Context& context) {
   const Index d = surface.dim();
+  detail::check_halving(d);
   const Box box = options.box ? *options.box : find_box(surface, Points(d, 0), context);
   require(surface, options, box);
   const double size = options.size;

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 namespace taut::detail {
 

@@ -11,6 +11,7 @@
 #include "curve/chord_error.hpp"
 #include "curve/flow_solver.hpp"
 #include "curve/plane_projection.hpp"
+#include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -40,7 +41,7 @@ void validate(const Surface& surface, const PointsIn& start, const FlowOptions& 
   if (!start.allFinite()) throw InvalidArgument("correct_flow: start holds a coordinate that is not finite");
   const auto not_negative = [](double v, const char* name) {
     if (!(v >= 0) || !std::isfinite(v)) {
-      throw InvalidArgument(std::string("correct_flow: ") + name + " = " + std::to_string(v) +
+      throw InvalidArgument(std::string("correct_flow: ") + name + " = " + detail::describe(v) +
                             ", must be finite and >= 0");
     }
   };
@@ -49,7 +50,7 @@ void validate(const Surface& surface, const PointsIn& start, const FlowOptions& 
   not_negative(options.curvature_bound, "curvature_bound");
   const double most = options.time_step == FlowTimeStep::explicit_euler ? 4 : std::numeric_limits<double>::max();
   if (!(options.beta > 0 && options.beta <= most)) {
-    throw InvalidArgument("correct_flow: beta = " + std::to_string(options.beta) +
+    throw InvalidArgument("correct_flow: beta = " + detail::describe(options.beta) +
                           ", must be > 0 (and at most 4 with explicit steps)");
   }
   if (options.max_steps < 1) {
@@ -250,7 +251,7 @@ FlowResult Correction::run(const PointsIn& start) {
   }
   const Plan steps = plan(state.nodes.points());
   if (static_cast<double>(steps.num_intervals) > kMostNodes) {
-    throw OutOfMemory("correct_flow: spacing = " + std::to_string(options_.spacing) + " asks for " +
+    throw OutOfMemory("correct_flow: spacing = " + detail::describe(options_.spacing) + " asks for " +
                       std::to_string(steps.num_intervals) + " nodes; choose a larger spacing");
   }
   // Each level evens out its nodes along the curve; a new one begins with as many as the plan says.

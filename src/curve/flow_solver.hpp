@@ -30,8 +30,8 @@ class FlowSolver {
  public:
   FlowSolver(const Surface& surface, const FlowOptions& options, const Context& context);
 
-  /// Flows `start` until |k_g| <= bound, the intervals agree within 0.1 %, and the nodes are on the surface; or until
-  /// no step decreases the energy any more.
+  /// Flows `start` until |k_g| <= bound, neighbouring intervals agree to 1e-7, and the nodes are on the surface; or
+  /// until no step decreases the energy any more.
   [[nodiscard]] FlowState relax(Points start, double bound);
 
   /// The node at which the second variation of the discrete energy stops being positive definite, counted from the

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "curve/newton_backend.hpp"
+#include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -10,7 +11,7 @@ namespace {
 
 void check(const NewtonOptions& options) {
   if (!(options.tolerance >= 1e-13 && options.tolerance <= 1e-3)) {
-    throw InvalidArgument("tolerance is " + std::to_string(options.tolerance) + ", must be in 1e-13 .. 1e-3");
+    throw InvalidArgument("tolerance is " + detail::describe(options.tolerance) + ", must be in 1e-13 .. 1e-3");
   }
   if (options.max_iterations < 1) {
     throw InvalidArgument("max_iterations is " + std::to_string(options.max_iterations) + ", must be at least 1");

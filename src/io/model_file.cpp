@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -107,7 +108,11 @@ class ModelReader {
 
  private:
   void read(double& value) { value = real(); }
-  void read(int& value) { value = static_cast<int>(integer()); }
+  void read(int& value) {
+    const Index wide = integer();
+    if (wide > std::numeric_limits<int>::max()) file_.fail("is damaged (a face names no sample); fit the cloud again");
+    value = static_cast<int>(wide);
+  }
   std::uint64_t word() {
     if (rest_.size() < 8) file_.fail("is damaged (it ends too early); fit the cloud again");
     return take_word(rest_);

@@ -261,7 +261,6 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       if (gradient.dot(branch) < kMinBranchCosine) continue;
       const double miss = frame_.cross(gradient, y.chord);
       // Those beside or ahead of x only where nobody is behind.
-
       const double along2 = y.along * std::abs(y.along);
       if (along2 < -kBehind * kBehind * y.chord2) continue;
       const double measure = std::abs(miss) + (along2 < kBehind * kBehind * y.chord2 ? 4 * std::sqrt(y.chord2) : 0.0);

@@ -60,6 +60,7 @@ void CellLevels::prepare(const PointsIn& near) {
     complete_.clear();
   }
   if (!exist()) {
+    if (near.cols() == 0) return;  // nothing to judge by yet
     box_ = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
     size_ = std::max(box_.extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
     return;

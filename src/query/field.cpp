@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "query/cell_levels.hpp"
 #include "taut/core/error.hpp"
@@ -13,6 +14,10 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   if (sources.cols() == 0) throw InvalidArgument("a distance field needs at least one source");
   for (Index j = 0; j < sources.cols(); ++j) detail::check_point(surface, sources.col(j), "source");
   detail::CellLevels levels(surface, options.grid, options.cell, context);
+  if (!levels.exist()) {
+    throw InvalidArgument("distances are marched on cells, which are made in up to 6 dimensions, not in " +
+                          std::to_string(surface.dim()));
+  }
   levels.prepare(sources);
   Points on_surface(sources.rows(), sources.cols());
   for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = levels.on_surface(sources.col(j), "source");

@@ -71,8 +71,7 @@ void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier) {
   result.status = Status::not_converged;
   result.message = fmt::format(
       "the surface is not smooth between the two points: near ({:.4g}) its normal turns by {:.0f} degrees within a "
-      "cell of "
-      "{:.2g}; geodesics over a crease or through a singular point are not supported",
+      "cell of {:.2g}; geodesics over a crease or through a singular point are not supported",
       fmt::join(barrier->point, ", "), barrier->turn * 180 / std::numbers::pi, result.cell);
 }
 

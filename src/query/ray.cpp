@@ -32,6 +32,19 @@ void check_direction(const Surface& surface, const VectorIn& direction, double l
   if (!std::isfinite(length)) throw InvalidArgument(fmt::format("length {}: must be finite", length));
 }
 
+/// What `answer` makes of one ray of many; what it throws becomes the ray's message, Cancelled apart.
+template <class Answer>
+void guard(RayResult& result, const Answer& answer) {
+  try {
+    answer();
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Error& error) {
+    result.message = error.what();
+    if (dynamic_cast<const SingularPoint*>(&error) != nullptr) result.status = Status::rank_deficient;
+  }
+}
+
 std::string explain(const ExponentialResult& result, double length) {
   if (result.status == Status::ok) return {};
   if (result.length == length) return std::string(result.reason);
@@ -112,14 +125,10 @@ std::vector<RayResult> RaySolver::solve_many(const PointsIn& from, const PointsI
   std::vector<RayResult> results(static_cast<std::size_t>(from.cols()));
   for (Index j = 0; j < from.cols(); ++j) {  // the cells that judge a start are made once
     RayResult& result = results[static_cast<std::size_t>(j)];
-    try {
+    guard(result, [&] {
       check_direction(impl.surface, directions.col(j), lengths(j));
       result.from = impl.start(from.col(j));
-    } catch (const Cancelled&) {
-      throw;
-    } catch (const Error& error) {
-      result.message = error.what();
-    }
+    });
   }
   detail::parallel_for(impl.context, 0, from.cols(), kGrain, [&](Index first, Index last) {
     ExponentialMap map(impl.surface, impl.options);
@@ -128,14 +137,10 @@ std::vector<RayResult> RaySolver::solve_many(const PointsIn& from, const PointsI
     for (Index j = first; j < last; ++j) {
       RayResult& result = results[static_cast<std::size_t>(j)];
       if (!result.message.empty()) continue;
-      try {
+      guard(result, [&] {
         static_cast<ExponentialResult&>(result) = map.trace(result.from, directions.col(j), lengths(j), quiet);
         result.message = explain(result, lengths(j));
-      } catch (const Cancelled&) {
-        throw;
-      } catch (const Error& error) {
-        result.message = error.what();
-      }
+      });
     }
   });
   return results;

@@ -1,5 +1,7 @@
 #include "taut/query/surface_mesh.hpp"
 
+#include <string>
+
 #include "query/cell_levels.hpp"
 #include "taut/core/error.hpp"
 
@@ -15,15 +17,18 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
   // Cells chosen for marching are too coarse to look at.
   const int level = options.cell > 0 ? 0 : 1;
   const SurfaceMesh mesh = mesh_surface(surface, levels.cells(level, Points(surface.dim(), 0))->grid(), {}, context);
-  if (mesh.faces.cols() == 0)
-    throw EmptySurface("the surface has no piece that these cells can show; try a smaller one");
+  if (mesh.faces.cols() == 0) {
+    throw EmptySurface("the surface has no piece that these cells can show; try smaller ones");
+  }
   return mesh;
 }
 
 Points display_cells(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
   detail::CellLevels levels(surface, options.grid, options.cell, context);
+  if (!levels.exist()) {
+    throw InvalidArgument("cells are made in up to 6 dimensions, not in " + std::to_string(surface.dim()));
+  }
   levels.prepare(Points(surface.dim(), 0));
-  if (!levels.exist()) throw InvalidArgument("cells are made in up to 6 dimensions");
   const std::shared_ptr<SurfaceCells> cells = levels.cells(0, Points(surface.dim(), 0));
   Points centres(surface.dim(), cells->num_valid());
   Index count = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -8,8 +9,7 @@
 namespace taut::detail {
 
 /// The thin QR factorisation J^T = Q R of a Jacobian (d x k, a gradient per column), by modified Gram-Schmidt done
-/// twice
-/// ("twice is enough"): Q is orthonormal to rounding. D is d at compile time, or Eigen::Dynamic.
+/// twice ("twice is enough"): Q is orthonormal to rounding. D is d at compile time, or Eigen::Dynamic.
 template <int D>
 class NormalSpace {
  public:

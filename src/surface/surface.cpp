@@ -9,6 +9,8 @@
 namespace taut {
 namespace {
 
+// Below, `dense` is a copy of points that may be a block of a larger matrix: evaluators take them without gaps.
+
 void require_dim(const char* what, Index found, Index expected) {
   if (found == expected) return;
   throw InvalidArgument(std::string(what) + " has dimension " + std::to_string(found) + ", the surface has " +
@@ -33,7 +35,13 @@ Surface::Surface(std::shared_ptr<const ImplicitFunction> function, SurfaceExtras
     throw InvalidArgument(message);
   }
   if (extras_.domain) require_dim("the domain", extras_.domain->dim(), d);
-  if (extras_.box) require_dim("the box", extras_.box->dim(), d);
+  if (extras_.box) {
+    require_dim("the box's lower corner", extras_.box->lower.size(), d);
+    require_dim("the box's upper corner", extras_.box->upper.size(), d);
+    if (!(extras_.box->lower.array() <= extras_.box->upper.array()).all()) {
+      throw InvalidArgument("the box's lower corner must nowhere be above its upper corner, nor NaN");
+    }
+  }
   if (extras_.samples) require_dim("the samples", extras_.samples->dim(), d);
 }
 
@@ -52,14 +60,16 @@ Surface Surface::with_samples(std::shared_ptr<const PointCloud> samples) const {
 Points Surface::value(const PointsIn& x) const {
   require_dim("the point", x.rows(), dim());
   Points result(codim(), x.cols());
-  make_evaluator()->evaluate({.n = x.cols(), .x = x.data(), .value = result.data()});
+  const Points dense = x;
+  make_evaluator()->evaluate({.n = dense.cols(), .x = dense.data(), .value = result.data()});
   return result;
 }
 
 Points Surface::jacobian(const PointsIn& x) const {
   require_dim("the point", x.rows(), dim());
   Points result(dim() * codim(), x.cols());
-  make_evaluator()->evaluate({.n = x.cols(), .x = x.data(), .jacobian = result.data()});
+  const Points dense = x;
+  make_evaluator()->evaluate({.n = dense.cols(), .x = dense.data(), .jacobian = result.data()});
   return result;
 }
 
@@ -78,8 +88,9 @@ Eigen::Array<bool, Eigen::Dynamic, 1> Surface::inside_domain(const PointsIn& x, 
   const Index m = domain()->codim();
   Points value(m, x.cols());
   Points jacobian(dim() * m, x.cols());
+  const Points dense = x;
   domain()->make_evaluator()->evaluate(
-      {.n = x.cols(), .x = x.data(), .value = value.data(), .jacobian = jacobian.data()});
+      {.n = dense.cols(), .x = dense.data(), .value = value.data(), .jacobian = jacobian.data()});
   Mask inside(x.cols());
   for (Index j = 0; j < x.cols(); ++j) {
     Eigen::Map<const Eigen::MatrixXd> gradients(jacobian.col(j).data(), dim(), m);

@@ -238,6 +238,7 @@ TEST(Subdivide, RefusesWhatCannotBe) {
   EXPECT_THROW((void)subdivide(sphere, {.size = 0}), InvalidArgument);
   EXPECT_THROW((void)subdivide(sphere, {.size = -1}), InvalidArgument);
   EXPECT_THROW((void)subdivide(sphere, {.size = std::nan("")}), InvalidArgument);
+  EXPECT_THROW((void)subdivide(test::bounded_sphere(Vector::Zero(40), 1), {.size = 0.1}), InvalidArgument);
   const Box flat{Eigen::Vector2d(0, 0), Eigen::Vector2d(1, 1)};
   EXPECT_THROW((void)subdivide(sphere, {.size = 0.1, .box = flat}), InvalidArgument);
   const Box inside_out{Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(0, 2, 2)};

@@ -132,6 +132,7 @@ TEST(March, RefusesWrongRequests) {
   EXPECT_THROW((void)march(sphere, cells, Eigen::Vector3d(9, 0, 0)), InvalidArgument);
   EXPECT_THROW((void)march(sphere, cells, Eigen::Vector3d(0, 0, 0)), SingularPoint);
   EXPECT_THROW((void)march(sphere, cells, source, {.target = Eigen::Vector2d(1, 0)}), InvalidArgument);
+  EXPECT_THROW((void)march(sphere, cells, source, {.radius = std::nan("")}), InvalidArgument);
 }
 
 TEST(March, IsCancelled) {

@@ -32,5 +32,9 @@ TEST(MarchedField, NeedsASource) {
   EXPECT_THROW((void)marched_field(test::unit_sphere(), Points(3, 0)), InvalidArgument);
 }
 
+TEST(MarchedField, RefusesMoreDimensionsThanCellsReach) {
+  EXPECT_THROW((void)marched_field(test::unit_sphere(8), Vector(Vector::Unit(8, 0))), InvalidArgument);
+}
+
 }  // namespace
 }  // namespace taut

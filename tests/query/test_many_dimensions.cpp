@@ -193,5 +193,14 @@ TEST(ManyDimensions, SamplesShowTheWay) {
   EXPECT_NEAR(path.length, pi, 1e-9);
 }
 
+TEST(ManyDimensions, PairsOfWhichNoneIsFiniteAreAnsweredAll) {
+  const Points nothing = Points::Constant(8, 2, std::nan(""));
+  PathSolver solver(parse_surface("x1^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2+x8^2=1"));
+  for (const PathResult& path : solver.solve_pairs(nothing, nothing)) {
+    EXPECT_NE(path.message.find("must be finite"), std::string::npos) << path.message;
+  }
+  EXPECT_NEAR(solver.solve(Vector::Unit(8, 0), Vector::Unit(8, 1)).length, pi / 2, 1e-9);
+}
+
 }  // namespace
 }  // namespace taut

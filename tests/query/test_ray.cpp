@@ -82,5 +82,15 @@ TEST(Ray, ManyAreAnsweredInPlaceOnAnyNumberOfThreads) {
   }
 }
 
+TEST(Ray, OfManySaysWhichStartIsSingular) {
+  Points from(3, 2);
+  from << 0, 1, 0, 0, 0, 1;
+  const Points directions = Vector(Eigen::Vector3d(1, 0, 1)).replicate(1, 2);
+  RaySolver solver(parse_surface("x^2+y^2=z^2"));
+  const std::vector<RayResult> rays = solver.solve_many(from, directions, Eigen::Vector2d(0.5, 0.5));
+  EXPECT_EQ(rays[0].status, Status::rank_deficient);
+  EXPECT_EQ(rays[1].status, Status::ok);
+}
+
 }  // namespace
 }  // namespace taut

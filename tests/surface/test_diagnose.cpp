@@ -115,6 +115,7 @@ TEST(DiagnoseRank, RefusesBadPoints) {
   const Surface sphere = parse_surface("x^2+y^2+z^2=1");
   EXPECT_THROW((void)diagnose_rank(sphere.function(), Vector::Zero(2)), InvalidArgument);
   EXPECT_THROW((void)diagnose_rank(sphere.function(), Vector::Constant(3, NAN)), InvalidArgument);
+  EXPECT_THROW((void)diagnose_rank(sphere.function(), Box{Vector::Zero(2), Vector::Ones(2)}), InvalidArgument);
 }
 
 }  // namespace

@@ -121,6 +121,11 @@ TEST(Normals, DegenerateCloudsAreRefusedWithTheReason) {
   cloud.faces.resize(3, 1);
   cloud.faces << 0, 1, 50;
   EXPECT_NE(message(cloud).find("names point 50"), std::string::npos) << message(cloud);
+  cloud.normals = cloud.points;  // given normals need no faces, but others do
+  EXPECT_NE(message(cloud).find("names point 50"), std::string::npos) << message(cloud);
+  cloud.faces.resize(3, 0);
+  cloud.normals = Points::Ones(2, 50);
+  EXPECT_NE(message(cloud).find("2 x 50"), std::string::npos) << message(cloud);
 }
 
 TEST(Normals, CoplanarPointsAreAFlatSheet) {

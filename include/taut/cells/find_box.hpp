@@ -14,11 +14,11 @@ namespace taut {
 ///    boxed, on the axes where it does so, around `near` with a margin of the points' spread, at least half their
 ///    largest coordinate; without points, +-5, doubled until there is a surface in it;
 ///  - else by trial: starts scattered over scales from 1e-3 to 1e6 around `near` (or 0) are projected; where three
-///  scales in a
-///    row find the same extent the surface is taken as bounded by it (and 10 % more), else as going on beyond, as
-///    above. Nothing is proved then: give a box if you know one.
+///    scales in a row find the same extent the surface is taken as bounded by it (and 10 % more), else as going on
+///    beyond, as above. Nothing is proved then: give a box if you know one.
 /// `near`: points of interest, d x n, model units, may be d x 0. Throws EmptySurface when there is nothing,
-/// InvalidArgument for a wrong dimension or non-finite points.
+/// InvalidArgument for a wrong dimension, non-finite points, or more than 12 dimensions to go
+/// through by bounds.
 [[nodiscard]] Box find_box(const Surface& surface, const PointsIn& near, const Context& context = {});
 
 }  // namespace taut

@@ -33,7 +33,8 @@ struct SurfaceMesh : TriangleMesh {
 /// seen. With a domain, triangles wholly outside are dropped and the vertices just outside move onto its edge.
 ///
 /// Cells where F is NaN, and pieces where it jumps sign without a zero (1/x), leave holes. An empty grid gives an empty
-/// mesh. Throws InvalidArgument unless d = 3 and k = 1, or when the grid has another dimension; Cancelled.
+/// mesh. Throws InvalidArgument unless d = 3 and k = 1, or when the grid has another dimension; OutOfMemory for more
+/// than 2^28 cells; Cancelled.
 [[nodiscard]] SurfaceMesh mesh_surface(const Surface& surface, const CellGrid& grid, const MeshOptions& options = {},
                                        const Context& context = {});
 

@@ -15,7 +15,8 @@ using Points = Eigen::MatrixXd;
 /// A point (d entries) passed in.
 using VectorIn = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Points (d x n, column-major, contiguous) passed in.
+/// Points (d x n, a point contiguous) passed in. A block of a larger matrix is taken without a copy, and then leaves
+/// gaps between its columns: `data()` alone does not tell where a point begins.
 using PointsIn = Eigen::Ref<const Eigen::MatrixXd>;
 
 }  // namespace taut

@@ -7,7 +7,7 @@
 
 namespace taut {
 
-/// Reads a list of points, d x n in the file's order, for `--points`, `--to-file` and `--at`: every format of
+/// Reads a list of points, d x n in the file's order (what `taut path --start` and `--samples` take): every format of
 /// `read_point_cloud`, of which only the points are used; any other extension (`.txt`, `.dat`, none) is read like
 /// `.csv`. In `.csv`, `.xyz`, `.pts` and plain text a line is a point: `dim` numbers, or columns named x y z ... in a
 /// header.

@@ -38,7 +38,7 @@ struct RankDiagnosis {
 [[nodiscard]] std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, const VectorIn& x);
 
 /// The same without a point: from a few points of `box` to the surface, by steps that need no full rank. None where
-/// that leads to regular points or nowhere. k may be d or more here.
+/// that leads to regular points or nowhere. k may be d or more here. Throws InvalidArgument for a wrong dimension.
 [[nodiscard]] std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, const Box& box);
 
 }  // namespace taut

@@ -26,7 +26,8 @@ struct FormulaOptions {
 /// docs/formula.md. Throws ParseError (with a caret under the column) or InvalidArgument.
 [[nodiscard]] Surface parse_surface(std::string_view formula, const FormulaOptions& options = {});
 
-/// The same for a function R^d -> R^m without the rule m < d: what a domain is made of.
+/// The same for a function R^d -> R^m without the rule m < d: what a domain is made of. An inequality stands for what
+/// it says is >= 0. `options.domain` and `options.box` play no part.
 [[nodiscard]] std::shared_ptr<const ImplicitFunction> parse_function(std::string_view formula,
                                                                      const FormulaOptions& options = {});
 

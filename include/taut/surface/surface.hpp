@@ -26,7 +26,8 @@ struct SurfaceExtras {
 /// threads.
 class Surface {
  public:
-  /// Throws InvalidArgument when `function` is null, d < 2, k is not in 1..d-1, or the extras' dimensions differ.
+  /// Throws InvalidArgument when `function` is null, d < 2, k is not in 1..d-1, the extras' dimensions
+  /// differ, or the box is turned inside out.
   explicit Surface(std::shared_ptr<const ImplicitFunction> function, SurfaceExtras extras = {});
 
   [[nodiscard]] Index dim() const { return function_->dim(); }

@@ -23,7 +23,7 @@ using detail::KdTree;
 
 void require_valid(const PointCloud& cloud, const RbfOptions& options) {
   const auto require = [](bool good, const char* what, double value) {
-    if (!good) throw InvalidArgument(std::string(what) + ", not " + std::to_string(value));
+    if (!good) throw InvalidArgument(std::string(what) + ", not " + detail::describe(value));
   };
   require(cloud.dim() >= 2, "points to fit need at least 2 coordinates", static_cast<double>(cloud.dim()));
   const double smoothing = options.smoothing.value_or(0);

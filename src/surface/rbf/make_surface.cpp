@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "surface/describe.hpp"
 #include "surface/rbf/polynomial.hpp"
 #include "surface/rbf/rbf_function.hpp"
 #include "surface/rbf/support_domain.hpp"
@@ -17,7 +18,7 @@ void require_consistent(const RbfModel& model) {
   const bool fits = d >= 2 && model.centres.rows() == d && model.weights.size() == model.centres.cols() &&
                     model.polynomial.size() == space.size() && model.samples.points.rows() == d;
   if (!fits) throw InvalidArgument("the RBF model's centres, weights, polynomial and samples do not fit together");
-  if (!(model.scale > 0)) throw InvalidArgument("the RBF model's scale is " + std::to_string(model.scale));
+  if (!(model.scale > 0)) throw InvalidArgument("the RBF model's scale is " + detail::describe(model.scale));
 }
 
 /// Where the samples are, with room for what the surface does between and around them.
