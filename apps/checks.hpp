@@ -42,6 +42,18 @@ namespace taut::app {
                       fmt::format("{}..{}", least, most));
 }
 
+/// A whole number from `least` to `most`.
+[[nodiscard]] inline CLI::Validator whole_number(long long least, long long most) {
+  const auto check = [least, most](std::string& text) -> std::string {
+    long long value = 0;
+    const bool is_whole = CLI::detail::lexical_cast(text, value);
+    return is_whole && value >= least && value <= most
+               ? ""
+               : fmt::format("'{}' is not a whole number from {} to {}", text, least, most);
+  };
+  return CLI::Validator(check, fmt::format("{}..{}", least, most));
+}
+
 /// One of these names, which stand for values of an enumeration.
 template <class Enum>
 [[nodiscard]] CLI::Validator one_of(const std::vector<std::pair<std::string, Enum>>& names) {

@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "deliver_path.hpp"
 #include "load_surface.hpp"
+#include "number_rows.hpp"
 #include "output.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
@@ -138,35 +139,24 @@ ExitCode run_rays(const ExpArguments& arguments, const Surface& surface, const C
   RaySolver solver(surface, options, context);
   bool all_ok = true;
   Index count = 0;
-  for (bool more = true; more;) {
-    std::vector<CsvRow> block;
-    for (CsvRow row; static_cast<Index>(block.size()) < kAtOnce && (more = rows.next(row));) block.push_back(row);
-    const auto n = static_cast<Index>(block.size());
-    Points from = Points::Zero(d, n);
-    Points directions = Points::Zero(d, n);
-    Vector lengths = Vector::Zero(n);
-    for (Index j = 0; j < n; ++j) {
-      CsvRow& row = block[static_cast<std::size_t>(j)];
-      if (row.problem.empty() && static_cast<Index>(row.values.size()) != 2 * d + 1) {
-        row.problem = fmt::format("{} numbers; a ray takes {}, p1,...,pd,v1,...,vd,s", row.values.size(), 2 * d + 1);
-      }
-      if (!row.problem.empty()) continue;  // its zero direction is refused below
-      from.col(j) = Eigen::Map<const Vector>(row.values.data(), d);
-      directions.col(j) = Eigen::Map<const Vector>(row.values.data() + d, d);
-      lengths(j) = row.values.back();
-    }
+  const std::string takes = fmt::format("a ray takes {}, p1,...,pd,v1,...,vd,s", 2 * d + 1);
+  for (;;) {
+    const NumberRows block = read_number_rows(rows, 2 * d + 1, kAtOnce, takes);
+    if (block.size() == 0) break;
+    const Points from = block.values.topRows(d);
+    const Points directions = block.values.middleRows(d, d);
+    const Vector lengths = block.values.row(2 * d).transpose();
     const std::vector<RayResult> results = solver.solve_many(from, directions, lengths);
-    for (Index j = 0; j < n; ++j) {
-      const RayResult& result = results[static_cast<std::size_t>(j)];
-      const CsvRow& row = block[static_cast<std::size_t>(j)];
+    for (std::size_t j = 0; j < results.size(); ++j) {
+      const RayResult& result = results[j];
       if (result.status != Status::ok) {
         all_ok = false;
-        print_error(fmt::format("{} line {}: {}", arguments.rays, row.line,
-                                row.problem.empty() ? result.message : row.problem));
+        const std::string& problem = block.problems[j].empty() ? result.message : block.problems[j];
+        print_error(fmt::format("{} line {}: {}", arguments.rays, block.lines[j], problem));
       }
-      std::cout << ray_csv(result, d, lengths(j)) << "\n";
+      std::cout << ray_csv(result, d, lengths(static_cast<Index>(j))) << "\n";
     }
-    context.report("rays", -static_cast<double>(count += n));
+    context.report("rays", -static_cast<double>(count += block.size()));
   }
   return all_ok ? kDone : kSomeLinesFailed;
 }
@@ -202,7 +192,7 @@ Run add_exp_command(CLI::App& app) {
   command.add_option("--tol", arguments->options.tolerance, "error a step may add (default: rounding)")
       ->check(number_between(0, 1e-3));
   command.add_option("--steps", arguments->options.max_steps, "give up after this many steps")
-      ->check(number_between(1, 1e9))
+      ->check(whole_number(1, 1000000000))
       ->capture_default_str();
   command.add_flag("--no-conjugate", arguments->no_conjugate,
                    "do not look for conjugate points: faster in many dimensions");

@@ -64,7 +64,10 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
   clear_progress();
   bool all_ok = true;
   for (const PathResult& result : best) {
-    all_ok = all_ok && result.status == Status::ok;
+    if (result.status != Status::ok) {
+      all_ok = false;
+      print_error(fmt::format("{} point {}: {}", arguments.at, &result - best.data() + 1, result.message));
+    }
     if (result.points.cols() > 0) {
       std::cout << fmt::format("{},{}\n", result.length, result.length_error);
     } else {
@@ -87,8 +90,8 @@ ExitCode run(const FieldArguments& arguments) {
   if (surface.dim() != 3 || surface.codim() != 1) {
     throw InvalidArgument(
         fmt::format("a field is drawn on surfaces in 3 dimensions, this one lies in {} with {} "
-                    "equation(s); use --at POINTS.csv",
-                    surface.dim(), surface.codim()));
+                    "equation{}; use --at POINTS.csv",
+                    surface.dim(), surface.codim(), surface.codim() == 1 ? "" : "s"));
   }
   const FieldResult field = marched_field(surface, sources, arguments.options, context);
   clear_progress();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <utility>
@@ -68,7 +69,7 @@ void SurfaceArguments::add_to(CLI::App& command) {
                   "a formula such as 'x^2+y^2+4z^2=1', a point cloud or mesh file, or a .taut model")
       ->required();
   command.add_option("--dim", dim, "dimension of a formula's space (default: its largest variable)")
-      ->check(number_between(2, 100000));
+      ->check(whole_number(2, 65535));
   command.add_option("--set", parameters, "a parameter of the formula, NAME=VALUE (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
@@ -84,7 +85,7 @@ void add_fit_options(CLI::App& command, RbfOptions& options) {
       ->check(number_not_below_zero())
       ->group("Fitting a cloud");
   command.add_option("--samples-max", options.max_samples, "fit at most this many well-spread samples")
-      ->check(number_between(10, 20000))
+      ->check(whole_number(10, 20000))
       ->group("Fitting a cloud");
   command
       .add_option("--support", options.support_radius, "the surface ends this far from its samples; negative = never")

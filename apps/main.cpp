@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <iostream>
@@ -87,6 +88,13 @@ std::string check_command(const CLI::App& app, const std::vector<std::string>& a
   return fmt::format("{}; the commands are {} (see taut --help)", problem, names);
 }
 
+/// The first argument of a command that looks like an option and is none; empty when there is none such.
+std::string unknown_option(const CLI::App& command) {
+  const std::vector<std::string> extras = command.remaining();
+  const auto option = std::ranges::find_if(extras, [](const std::string& text) { return text.starts_with("-"); });
+  return option != extras.end() ? *option : "";
+}
+
 int run_program(int argc, char** argv) {
   CLI::App app{kDescription, "taut"};
   app.footer(kFooter);
@@ -107,8 +115,7 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(std::move(arguments));
   } catch (const CLI::CallForHelp&) {
-    const auto chosen = app.get_subcommands();
-    std::cout << (chosen.empty() ? app.help() : chosen.front()->help());
+    std::cout << app.help();  // of the command that was chosen, if one was
     return kDone;
   } catch (const CLI::Success& e) {
     std::cout << e.what() << "\n";
@@ -116,7 +123,11 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     const auto chosen = app.get_subcommands();
     const std::string help = chosen.empty() ? "taut --help" : "taut " + chosen.front()->get_name() + " --help";
-    return fail(kWrongUsage, std::string(e.what()) + " (see " + help + ")");
+    std::string problem = e.what();
+    if (const std::string option = chosen.empty() ? "" : unknown_option(*chosen.front()); !option.empty()) {
+      problem = fmt::format("there is no option {}", option);
+    }
+    return fail(kWrongUsage, fmt::format("{} (see {})", problem, help));
   }
   for (const auto& [command, run] : commands) {
     if (command->parsed()) return guarded(run);
@@ -128,7 +139,7 @@ int run_program(int argc, char** argv) {
 
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--threads", terminal.threads, "threads; 0 = all cores (never changes a result)")
-      ->check(number_between(0, 4096));
+      ->check(whole_number(0, 4096));
   command.add_flag("--quiet", terminal.quiet, "no notes and no progress on stderr");
   command.add_flag("--progress", terminal.progress, "progress lines even when stderr is no terminal");
 }

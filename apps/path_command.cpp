@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "deliver_path.hpp"
 #include "load_surface.hpp"
+#include "number_rows.hpp"
 #include "output.hpp"
 #include "path_class.hpp"
 #include "path_pairs.hpp"
@@ -143,41 +144,26 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
   return deliver(path);
 }
 
-/// The points of a file, a line each; a bad line becomes a column of NaN, which its path then reports.
-Points read_targets(const std::string& file, Index dim) {
-  CsvRows rows(file);
-  std::vector<Vector> columns;
-  for (CsvRow row; rows.next(row);) {
-    const bool good = row.problem.empty() && static_cast<Index>(row.values.size()) == dim;
-    if (!good) {
-      print_error(fmt::format(
-          "{} line {}: {}", file, row.line,
-          row.problem.empty() ? fmt::format("{} numbers; a point takes {}", row.values.size(), dim) : row.problem));
-    }
-    columns.push_back(good ? Vector(Eigen::Map<const Vector>(row.values.data(), dim))
-                           : Vector::Constant(dim, std::numeric_limits<double>::quiet_NaN()));
-  }
-  Points points(dim, static_cast<Index>(columns.size()));
-  for (std::size_t j = 0; j < columns.size(); ++j) points.col(static_cast<Index>(j)) = columns[j];
-  return points;
-}
-
 ExitCode run_many(const PathArguments& arguments, const Surface& surface, const Context& context,
                   double surface_seconds, const Timer& timer) {
   PathSolver solver(surface, arguments.options, context);
   const Vector p = parse_point(arguments.from, "--from", surface);
-  const Points targets = read_targets(arguments.to_file, surface.dim());
-  const std::vector<PathResult> results = solver.solve_from(p, targets);
+  CsvRows rows(arguments.to_file);
+  const NumberRows targets = read_number_rows(rows, surface.dim(), std::numeric_limits<Index>::max(),
+                                              fmt::format("a point takes {}", surface.dim()));
+  const std::vector<PathResult> results = solver.solve_from(p, targets.values);
   clear_progress();
   const double total = timer.seconds();
   bool all_ok = true;
   std::vector<const PathResult*> drawn;
   auto json = nlohmann::ordered_json::array();
   std::string csv;
-  for (const PathResult& result : results) {
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const PathResult& result = results[k];
     if (result.status != Status::ok) {
       all_ok = false;
-      print_error(fmt::format("path {}: {}", &result - results.data() + 1, result.message));
+      const std::string& problem = targets.problems[k].empty() ? result.message : targets.problems[k];
+      print_error(fmt::format("{} line {}: {}", arguments.to_file, targets.lines[k], problem));
     }
     if (result.points.cols() > 0) drawn.push_back(&result);
     json.push_back(path_json(surface, result, arguments.options, surface_seconds, total));
@@ -198,10 +184,10 @@ ExitCode run_many(const PathArguments& arguments, const Surface& surface, const 
 
 /// All that says which surface it is.
 std::string surface_text(const SurfaceArguments& arguments) {
-  std::string text =
-      fmt::format("{} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
-                  fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box,
-                  arguments.rbf.smoothing.value_or(-1), arguments.rbf.max_samples, arguments.rbf.support_radius);
+  std::string text = fmt::format("{} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
+                                 fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box,
+                                 arguments.samples, arguments.rbf.smoothing.value_or(-1), arguments.rbf.max_samples,
+                                 arguments.rbf.support_radius);
   if (!names_a_file(arguments.surface)) return text;
   std::error_code ignored;
   const auto time = std::filesystem::last_write_time(arguments.surface, ignored).time_since_epoch().count();
@@ -237,7 +223,8 @@ ExitCode run(const PathArguments& arguments) {
   const bool pairs = !arguments.pairs.empty();
   const bool in_class = !arguments.start.empty() || !arguments.closed.empty();
   if (in_class) check_class_usage(arguments);
-  if (!in_class && (int{one} + int{many} + int{pairs} != 1 || (pairs && !arguments.from.empty()))) {
+  if (!in_class &&
+      (int{one} + int{many} + int{pairs} != 1 || (pairs && !(arguments.from.empty() && arguments.to.empty())))) {
     throw UsageError(
         "give --from with --to, or --from with --to-file, or --pairs, --start or --closed (see taut path --help)");
   }
@@ -254,6 +241,8 @@ ExitCode run(const PathArguments& arguments) {
   if (pairs && (out.size() > 1 || (out.size() == 1 && !out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
   }
+  if (pairs && arguments.delivery.json)
+    throw UsageError("--pairs writes lines; --json is for --from with --to or --to-file");
   const Timer timer;
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "batch_output.hpp"
+#include "number_rows.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/csv_rows.hpp"
@@ -45,35 +46,6 @@ Survey survey(const std::string& file, Index d) {
   return found;
 }
 
-/// Some lines of the file: what they ask for, or what is wrong with them.
-struct Chunk {
-  std::vector<std::size_t> lines;
-  std::vector<std::string> problems;
-  Points from, to;  // d x n, NaN where there is a problem
-};
-
-Chunk read_chunk(CsvRows& rows, Index d, Index size) {
-  Chunk chunk;
-  chunk.from.setConstant(d, size, std::numeric_limits<double>::quiet_NaN());
-  chunk.to = chunk.from;
-  Index count = 0;
-  for (CsvRow row; count < size && rows.next(row); ++count) {
-    std::string problem = row.problem;
-    if (problem.empty() && static_cast<Index>(row.values.size()) != 2 * d) {
-      problem = fmt::format("{} numbers; a pair takes {}, p1,...,pd,q1,...,qd", row.values.size(), 2 * d);
-    }
-    if (problem.empty()) {
-      chunk.from.col(count) = Eigen::Map<const Vector>(row.values.data(), d);
-      chunk.to.col(count) = Eigen::Map<const Vector>(row.values.data() + d, d);
-    }
-    chunk.lines.push_back(row.line);
-    chunk.problems.push_back(std::move(problem));
-  }
-  chunk.from.conservativeResize(d, count);
-  chunk.to.conservativeResize(d, count);
-  return chunk;
-}
-
 /// One line that stands for the request: a file of results made under another one is not continued.
 std::string request_line(const PairsRequest& request) {
   std::error_code ignored;
@@ -81,9 +53,9 @@ std::string request_line(const PairsRequest& request) {
   const auto time = std::filesystem::last_write_time(request.file, ignored).time_since_epoch().count();
   const PathOptions& options = request.options;
   std::string line =
-      fmt::format("taut path {} --pairs {} ({} bytes, {}) {} {} {} {} {} {} {}", request.surface, request.file, size,
+      fmt::format("taut path {} --pairs {} ({} bytes, {}) {} {} {} {} {} {} {} {}", request.surface, request.file, size,
                   time, to_string(options.method), static_cast<int>(options.march), static_cast<int>(options.grid),
-                  options.cell, options.tolerance, options.spacing, options.beta);
+                  options.cell, options.tolerance, options.spacing, options.beta, options.all);
   std::ranges::replace(line, '\n', ' ');
   return line;
 }
@@ -115,11 +87,12 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
   if (found.corners.allFinite()) solver.expect(found.corners, found.count);
   Index size = kFirstChunk;
   using Clock = std::chrono::steady_clock;
+  const std::string takes = fmt::format("a pair takes {}, p1,...,pd,q1,...,qd", 2 * d);
   for (;;) {
-    const Chunk chunk = read_chunk(rows, d, size);
-    if (chunk.lines.empty()) break;
+    const NumberRows chunk = read_number_rows(rows, 2 * d, size, takes);
+    if (chunk.size() == 0) break;
     const auto start = Clock::now();
-    const std::vector<PathResult> results = solver.solve_pairs(chunk.from, chunk.to);
+    const std::vector<PathResult> results = solver.solve_pairs(chunk.values.topRows(d), chunk.values.bottomRows(d));
     std::string lines;
     for (std::size_t k = 0; k < results.size(); ++k) {
       const PathResult& result = results[k];

@@ -33,7 +33,7 @@ std::string duration(double seconds) {
 std::string grouped(Index n) {
   std::string text = std::to_string(n);
   for (auto i = static_cast<std::ptrdiff_t>(text.size()) - 3; i > 0; i -= 3)
-    text.insert(static_cast<std::size_t>(i), ",");
+    text.insert(static_cast<std::size_t>(i), 1, ',');
   return text;
 }
 
@@ -109,7 +109,9 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
                                              result.residual.surface, result.residual.geodesic_curvature)});
     facts.push_back({"method", fmt::format("{}, {} iterations", to_string(options.method), result.num_iterations)});
   }
-  facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(result.num_cells), result.cell)});
+  if (result.num_cells > 0) {
+    facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(result.num_cells), result.cell)});
+  }
   facts.push_back({"time", fmt::format("{} (surface {}, cells {}, march {}, correct {})", duration(total_seconds),
                                        duration(surface_seconds), duration(result.seconds.cells),
                                        duration(result.seconds.march), duration(result.seconds.correct))});

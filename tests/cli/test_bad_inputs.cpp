@@ -191,7 +191,10 @@ std::vector<BadInput> bad_inputs() {
       {"no command", {}, kWrongUsage, "give a command; the commands are path, field"},
       {"unknown command", {"fly", sphere}, kWrongUsage, "there is no command 'fly'"},
       {"no surface", {"path"}, kWrongUsage, "SURFACE"},
-      {"unknown option", with(good, {"--sideways"}), kWrongUsage, "--sideways"},
+      {"unknown option", with(good, {"--sideways"}), kWrongUsage, "there is no option --sideways"},
+      {"half a thread", with(good, {"--threads", "2.5"}), kWrongUsage, "'2.5' is not a whole number"},
+      {"pairs as JSON", {"path", sphere, "--pairs", "{}/four.csv", "--json"}, kWrongUsage, "--json"},
+      {"pairs with an end", {"path", sphere, "--pairs", "{}/four.csv", "--to", "1,0,0"}, kWrongUsage, "--pairs"},
       {"end missing", {"path", sphere, "--from", "1,0,0"}, kWrongUsage, "--to"},
       {"word as a coordinate", path(sphere, "1,up,0", "0,1,0"), kWrongUsage, "'up'"},
       {"coordinate missing", path(sphere, "1,,0", "0,1,0"), kWrongUsage, "''"},
@@ -300,6 +303,38 @@ TEST(BadInputs, BadLinesOfABatchAreAnsweredInPlace) {
     const std::string place = "pairs.csv line " + std::to_string(std::vector<int>{3, 5, 6, 7, 8}[i]) + ": ";
     EXPECT_NE(reasons[i].find(place), std::string::npos) << reasons[i];
   }
+}
+
+TEST(BadInputs, ABadDestinationIsToldOnceByItsLine) {
+  const TempFolder folder;
+  const auto ends = folder.write("ends.csv", "# ends\n0,1,0\n0,up,0\n0,1\n0,0,0.5\n");
+  const test::ProgramResult result =
+      run_taut({"path", "x^2+y^2+4z^2=1", "--from", "1,0,0", "--to-file", ends.string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(lines_of(result.out).size(), 4U) << result.out;
+  const auto told = lines_of(result.err);
+  ASSERT_EQ(told.size(), 2U) << result.err;
+  EXPECT_NE(told[0].find("ends.csv line 3: column 2: 'up'"), std::string::npos) << told[0];
+  EXPECT_NE(told[1].find("ends.csv line 4: 2 numbers; a point takes 3"), std::string::npos) << told[1];
+}
+
+TEST(BadInputs, APointWithoutADistanceSaysWhy) {
+  const TempFolder folder;
+  const auto points = folder.write("points.csv", "0,1,0\n9,9,9\n");
+  const test::ProgramResult result = run_taut({"field", "x^2+y^2+4z^2=1", "--from", "1,0,0", "--at", points.string()});
+  EXPECT_EQ(result.exit_code, 1);
+  ASSERT_EQ(lines_of(result.out).size(), 2U) << result.out;
+  EXPECT_EQ(lines_of(result.out)[1], "nan,inf");
+  EXPECT_NE(result.err.find("point 2: "), std::string::npos) << result.err;
+}
+
+TEST(BadInputs, BatchesOfWhichNoLineIsGoodInManyDimensions) {
+  const TempFolder folder;
+  const auto pairs = folder.write("pairs.csv", "1,2\n3,4\n");
+  const test::ProgramResult result =
+      run_taut({"path", "x1^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2+x8^2=1", "--pairs", pairs.string()});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(lines_of(result.out).size(), 2U) << result.out;
 }
 
 }  // namespace
