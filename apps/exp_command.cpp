@@ -58,6 +58,7 @@ Json ray_json(const Surface& surface, const RayResult& result, double asked, dou
   json["amplification"] = number(result.amplification);
   json["conjugate_at"] = result.conjugate_at ? Json(*result.conjugate_at) : Json(nullptr);
   json["conjugate_searched"] = result.conjugate_searched;
+  json["index"] = result.conjugate_searched != 0 ? Json(result.index) : Json(nullptr);
   json["steps"] = result.num_steps;
   json["seconds"] = seconds;
   json["points"] = Json::array();
@@ -81,7 +82,7 @@ std::vector<SceneFact> ray_facts(const RayResult& result) {
   if (!result.message.empty()) status += ": " + result.message;
   facts.push_back({"status", status});
   if (result.conjugate_at) {
-    facts.push_back({"conjugate", fmt::format("first at {:.15g}", *result.conjugate_at)});
+    facts.push_back({"conjugate", fmt::format("first at {:.15g}, index {}", *result.conjugate_at, result.index)});
   } else {
     facts.push_back({"conjugate", result.conjugate_searched != 0 || result.length == 0 ? "none" : "not looked for"});
   }

@@ -366,25 +366,25 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
     result.index = kernel_.num_negative();
     result.locally_shortest = outcome == Relaxation::converged && kernel_.resolved() && kernel_.minimum();
-    if (result.index > 0) result.conjugate_at = conjugate_at(result);
+    if (result.index > 0) find_conjugate(result);
     const bool in_domain = sample(start, result);
     decide(outcome, in_domain, result);
   }
 
-  // Arc length of the first conjugate point of a geodesic that is no minimum.
-  [[nodiscard]] std::optional<double> conjugate_at(const NewtonResult& result) {
+  // The first conjugate point of a geodesic that is no minimum, and how many there are.
+  void find_conjugate(NewtonResult& result) {
     if constexpr (System::kFactors) {
-      const auto t = kernel_.conjugate_point();
-      return t ? std::optional(*t * (check_.length / kernel_.period())) : std::nullopt;
+      if (const auto t = kernel_.conjugate_point()) result.conjugate_at = *t * (check_.length / kernel_.period());
     } else {  // the same geodesic as a ray, with its Jacobi fields
       const ExponentialOptions options{.tolerance = 1e-12, .points = false};
-      if (surface_.dim() - surface_.codim() - 1 > options.max_fields) return std::nullopt;
+      if (surface_.dim() - surface_.codim() - 1 > options.max_fields) return;
       try {
-        return exponential_map(surface_, kernel_.nodes().col(0), result.start_direction, check_.length, options,
-                               *context_)
-            .conjugate_at;
+        const ExponentialResult ray = exponential_map(surface_, kernel_.nodes().col(0), result.start_direction,
+                                                      check_.length, options, *context_);
+        result.conjugate_at = ray.conjugate_at;
+        if (ray.status == Status::ok) result.index = std::max(result.index, ray.index);
       } catch (const SingularPoint&) {
-        return std::nullopt;
+        return;
       }
     }
   }

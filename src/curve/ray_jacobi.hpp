@@ -68,20 +68,10 @@ class RayJacobi {
   /// blocks of the step's transfer. A symmetric matrix; its negative eigenvalues count the conjugate points in the
   /// step (it is a pivot of the index form), whatever their multiplicity. It is 1 for h = 0, and falls through zero
   /// transversally. In the first step there is none.
-  [[nodiscard]] double margin(double h) const {
-    if (at_start_) return 1;
-    const auto a = transfer.topLeftCorner(q_, q_);
-    const Block b = transfer.topRightCorner(q_, q_) / h;
-    if constexpr (Q == 1) {
-      return a(0, 0) / b(0, 0) + h * velocity_(0, 0) / position_(0, 0);
-    } else {
-      const Block riccati = velocity_ * position_.partialPivLu().inverse();
-      Block pivot = b.partialPivLu().solve(Block(a)) + h * riccati;
-      if (!pivot.allFinite()) return -1;
-      pivot = ((pivot + pivot.transpose()) / 2).eval();
-      return Eigen::SelfAdjointEigenSolver<Block>(pivot, Eigen::EigenvaluesOnly).eigenvalues()(0);
-    }
-  }
+  [[nodiscard]] double margin(double h) const { return pivots(h)(0); }
+
+  /// The conjugate points in a step, each as often as its multiplicity.
+  [[nodiscard]] int num_conjugate(double h) const { return static_cast<int>((pivots(h).array() < 0).count()); }
 
   /// Goes on to the end of the step, where the ray now is.
   void accept(const RayState& arrived) {
@@ -108,6 +98,23 @@ class RayJacobi {
   }
 
  private:
+  /// The eigenvalues that margin() speaks of, ascending; all -1 where the step is too long for them.
+  [[nodiscard]] Eigen::Matrix<double, Q, 1> pivots(double h) const {
+    using Values = Eigen::Matrix<double, Q, 1>;
+    if (at_start_) return Values::Ones(q_);
+    const auto a = transfer.topLeftCorner(q_, q_);
+    const Block b = transfer.topRightCorner(q_, q_) / h;
+    if constexpr (Q == 1) {
+      return Values(a(0, 0) / b(0, 0) + h * velocity_(0, 0) / position_(0, 0));
+    } else {
+      const Block riccati = velocity_ * position_.partialPivLu().inverse();
+      Block pivot = b.partialPivLu().solve(Block(a)) + h * riccati;
+      if (!pivot.allFinite()) return Values::Constant(q_, -1);
+      pivot = ((pivot + pivot.transpose()) / 2).eval();
+      return Eigen::SelfAdjointEigenSolver<Block>(pivot, Eigen::EigenvaluesOnly).eigenvalues();
+    }
+  }
+
   void carry_frame(RayStep<D>& step, double h) {
     const GaussCollocation& t = GaussCollocation::tables();
     auto& field = step.nodes();

@@ -223,7 +223,10 @@ class RayTracer : public ExponentialMap::Backend {
         if (with_fields_) jacobi_.attempt(step_);
       }
     }
-    if (with_fields_ && options_.conjugate && !result.conjugate_at) find_conjugate(result, h);
+    if (with_fields_ && options_.conjugate) {
+      if (!result.conjugate_at) find_conjugate(result, h);
+      if (result.conjugate_at) result.index += jacobi_.num_conjugate(h);
+    }
     errors_.push_back({step_.error_x, step_.error_v, 1});
     result.off_surface = std::max(result.off_surface, step_.off_surface);
     const RayState from = state_;

@@ -53,6 +53,9 @@ TEST(ExponentialMap, FollowsGreatCirclesInAnyDimension) {
       ASSERT_EQ(ray.conjugate_at.has_value(), searched && std::abs(s) > kPi);  // d - 2 conjugate points at once
       if (ray.conjugate_at) {
         EXPECT_NEAR(*ray.conjugate_at, std::copysign(kPi, s), 2e-15);
+        EXPECT_EQ(ray.index, d - 2);
+      } else {
+        EXPECT_EQ(ray.index, 0);
       }
     }
   }
@@ -63,6 +66,7 @@ TEST(ExponentialMap, KeepsCountOfTheLengthOfALongRay) {
   const double error = (ray.point - vec({std::cos(5000.0), std::sin(5000.0), 0})).norm();
   EXPECT_LT(error, 5e-12);
   EXPECT_LT(error, ray.error);
+  EXPECT_EQ(ray.index, static_cast<int>(5000 / kPi));
 }
 
 TEST(ExponentialMap, FollowsHelicesOnACylinder) {

@@ -15,7 +15,7 @@ struct ExponentialOptions {
   /// Error of each step, radians and relative to the step's length; 1e-3 .. 0. 0 = as near to rounding as F allows.
   double tolerance = 0;
   int max_steps = 100000;  ///< accepted steps, >= 1
-  /// Look for the first conjugate point. In more than a few dimensions that costs far more than the ray: q = d - k - 1
+  /// Look for conjugate points. In more than a few dimensions that costs far more than the ray: q = d - k - 1
   /// Hessian products a point, and products of dense q x q matrices.
   bool conjugate = true;
   /// With q above this, conjugate points are not looked for, and the error estimate rests on three neighbouring rays
@@ -39,7 +39,10 @@ struct ExponentialResult {
   /// Arc length from the start (with the sign of `length`) of the first conjugate point, up to the end of the ray.
   std::optional<double> conjugate_at;
   double conjugate_searched = 0;  ///< up to where it was looked for: `length`, or 0 where it was not
-  double off_surface = 0;         ///< largest |J^+ F| at the ends of the steps, model units
+  /// How many there are up to there, each as often as its multiplicity: the Morse index of the ray (one at the very
+  /// end may or may not count).
+  int index = 0;
+  double off_surface = 0;  ///< largest |J^+ F| at the ends of the steps, model units
   /// d x m, from the start to `point`, every one on the surface: what to draw or write.
   Points points;
   int num_steps = 0;
