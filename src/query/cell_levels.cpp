@@ -52,22 +52,24 @@ bool CellLevels::fitted() const { return surface_.samples() != nullptr && surfac
 
 double CellLevels::size(int level) const { return std::ldexp(size_, -level); }
 
-void CellLevels::prepare(const PointsIn& near) {
-  if (size_ > 0) {
+bool CellLevels::prepare(const PointsIn& near) {
+  const bool again = size_ > 0;
+  if (again) {
     bool inside = true;
     for (Index j = 0; j < near.cols(); ++j) inside = inside && box_.contains(near.col(j));
-    if (inside || surface_.box()) return;
+    if (inside || surface_.box()) return false;
     complete_.clear();
   }
   if (!exist()) {
-    if (near.cols() == 0) return;  // nothing to judge by yet
+    if (near.cols() == 0) return again;  // nothing to judge by yet
     box_ = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
     size_ = std::max(box_.extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
-    return;
+    return again;
   }
   box_ = surface_.box() ? *surface_.box() : find_box(surface_, near, context_);
   size_ = cell_;
   if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box_);
+  return again;
 }
 
 bool CellLevels::grows() const { return grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted()); }

@@ -21,8 +21,9 @@ class CellLevels {
   /// `cell` = 0 has the size h chosen.
   CellLevels(Surface surface, GridMethod grid, double cell, Context context);
 
-  /// Makes sure that the points near (d x n) lie where cells are looked for. Finds the box and h the first time.
-  void prepare(const PointsIn& near);
+  /// Makes sure that the points near (d x n) lie where cells are looked for. Finds the box and h the first time. True
+  /// when that makes earlier cells void.
+  bool prepare(const PointsIn& near);
 
   /// False in more than kMostDimensions: then there is a box and a size to judge points by, but no cells.
   [[nodiscard]] bool exist() const { return surface_.dim() <= kMostDimensions; }

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "curve/polyline.hpp"
 #include "query/cell_size.hpp"
 #include "query/find_ways.hpp"
 #include "query/stopwatch.hpp"
@@ -40,10 +41,6 @@ Points ends(const Vector& p, const Vector& q) {
   Points x(p.size(), 2);
   x << p, q;
   return x;
-}
-
-double length_of(const Points& x) {
-  return (x.rightCols(x.cols() - 1) - x.leftCols(x.cols() - 1)).colwise().norm().sum();
 }
 
 }  // namespace
@@ -124,7 +121,7 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
     Ways ways = find_ways(surface_, p, q, options_.all, context_);
     starts.rivals_sought = ways.rivals_sought;
     for (Points& way : ways.paths) {
-      const double length = length_of(way);
+      const double length = polyline_length(way);
       starts.paths.push_back({length, std::move(way)});
     }
     std::ranges::sort(starts.paths, {}, &StartPath::length);
