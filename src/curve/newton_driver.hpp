@@ -116,12 +116,13 @@ class NewtonDriver : public NewtonSolver::Backend {
   void measure_turning() {
     const Index m = kernel_.num_elements();
     turning_.assign(static_cast<std::size_t>(m), 0.0);
-    for (Index e = 1; e + 1 < m; ++e) {
-      turning_[static_cast<std::size_t>(e)] = flipped(e) ? 2 : kernel_.turn(e, e + 1);
+    const auto seen = [&](Index e) { return kernel_.regular(e) && kernel_.regular(e + 1); };
+    for (Index e = 0; e < m; ++e) {
+      if (seen(e)) turning_[static_cast<std::size_t>(e)] = flipped(e) ? 2 : kernel_.turn(e, e + 1);
     }
     if (m >= 3) {
-      turning_.front() = turning_[1];
-      turning_.back() = turning_[static_cast<std::size_t>(m - 2)];
+      if (!seen(0)) turning_.front() = turning_[1];
+      if (!seen(m - 1)) turning_.back() = turning_[static_cast<std::size_t>(m - 2)];
     }
   }
   [[nodiscard]] bool flipped(Index e) const {
@@ -357,7 +358,6 @@ class NewtonDriver : public NewtonSolver::Backend {
       result.length_error += std::max(4 * gain, 0.25 * options_.tolerance * check_.length);
     }
     result.length_error += soft_error();
-    if (outcome != Relaxation::converged) result.length_error = std::max(result.length_error, 1e-6 * check_.length);
     for (const double off : check_.element_off) {  // where the curve cuts a corner
       if (off > surface_limit()) result.length_error += 2 * off;
     }
@@ -441,9 +441,12 @@ class NewtonDriver : public NewtonSolver::Backend {
     } else {
       result.status = Status::ok;
     }
-    if (result.status ==
-        Status::not_converged) {  // straightening a bend of angle a in a path of length L gains up to a^2 L / 8
-      result.length_error = std::max(result.length_error, check_.turning * check_.turning * check_.length / 8);
+    if (result.status == Status::not_converged) {
+      // Straightening a bend of angle a in a path of length L gains up to a^2 L / 8; where a curve that is no geodesic
+      // would come to rest, nobody knows.
+      const double gain = check_.turning * check_.turning * check_.length / 8;
+      const bool at_rest = outcome == Relaxation::converged || outcome == Relaxation::saddle;
+      result.length_error = at_rest ? std::max(result.length_error, gain) : std::numeric_limits<double>::infinity();
     }
     if (result.status == Status::not_converged && check_.weakest_gradient < 1e-3) {
       result.status = Status::rank_deficient;

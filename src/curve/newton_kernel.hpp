@@ -81,9 +81,11 @@ class NewtonKernel {
   [[nodiscard]] double period() const { return period_; }  ///< T
   [[nodiscard]] Nodes& nodes() { return curve_.x; }
   [[nodiscard]] const Nodes& nodes() const { return curve_.x; }
-  /// How much the tangent space turns from node i to node j, both inner ones (an angle, radians, for small ones).
+  /// Has node j, of the last visit, a tangent space: only an end may have none (a singular point).
+  [[nodiscard]] bool regular(Index j) const { return j == 0 ? regular_start_ : j + 1 < num_nodes() || regular_end_; }
+  /// How much the tangent space turns from node i to node j, both regular (an angle, radians, for small ones).
   [[nodiscard]] double turn(Index i, Index j) const { return system_.turn(i, j); }
-  /// A unit normal at inner node j (the first of k), of the last visit.
+  /// A unit normal at node j, a regular one (the first of k), of the last visit.
   [[nodiscard]] auto normal(Index j) const { return curve_.normal.col(j); }
   [[nodiscard]] Index codim() const { return k_; }
 
@@ -112,7 +114,7 @@ class NewtonKernel {
   [[nodiscard]] double ends_off() const { return ends_off_; }
   /// Parameter of the first conjugate point, for a curve with negative directions. None when an end is a singular
   /// point of the surface.
-  std::optional<double> conjugate_point() { return system_.conjugate_point(curve_, regular_ends_); }
+  std::optional<double> conjugate_point() { return system_.conjugate_point(curve_, regular_start_ && regular_end_); }
 
   /// Moves the nodes to a geodesic.
   Relaxation relax(Evaluator& evaluator, const RelaxationGoal& goal, const Context& context) {
@@ -227,7 +229,8 @@ class NewtonKernel {
   static constexpr int kMostSinking = 30;
   static constexpr int kMostHalvings = 30;
   static constexpr int kFewHalvings = 2;
-  static constexpr double kMostTurn = 0.7;  // radians a node may move around its surface in one step
+  static constexpr double kFarthestApart = 0.2;  // cosine between the normals of neighbours
+  static constexpr double kMostTurn = 0.7;       // radians a node may move around its surface in one step
 
   // F, J (and what the system wants) at the nodes.
   void visit(Evaluator& evaluator) {
@@ -252,8 +255,11 @@ class NewtonKernel {
           frame_.pseudo_inverse(curve_.value.col(j), mu_scratch_, vector_);
           ends_off_ = std::max(ends_off_, vector_.norm());
         }
-        regular_ends_ = (j == 0 || regular_ends_) && regular;
-        if (regular) system_.keep(j, frame_);
+        (j == 0 ? regular_start_ : regular_end_) = regular;
+        if (regular) {
+          curve_.normal.col(j) = frame_.first_normal();
+          system_.keep(j, frame_);
+        }
         continue;
       }
       if (!regular) return false;
@@ -403,14 +409,16 @@ class NewtonKernel {
       const double moved = alpha * trial_step_.col(j).norm();
       if (curve_.off.col(j).norm() > 0.3 * moved + 2 * off + 1e-12 * period_) return false;
       if (k_ > 1) continue;
-      if (curve_.normal.col(j).dot(old_normal_.col(j)) < 0.3) return false;
-      // Neighbours that drift apart around the surface would let the curve slip through it.
-      if (j > 1 && curve_.normal.col(j).dot(curve_.normal.col(j - 1)) < 0.2 &&
-          old_normal_.col(j).dot(old_normal_.col(j - 1)) >= 0.2) {
-        return false;
-      }
+      if (curve_.normal.col(j).dot(old_normal_.col(j)) < 0.3 || drifts_apart(j)) return false;
     }
-    return true;
+    return k_ > 1 || !drifts_apart(num_nodes() - 1);
+  }
+
+  // Neighbours that drift apart around the surface, j - 1 and j here, would let the curve slip through it.
+  [[nodiscard]] bool drifts_apart(Index j) const {
+    if (!regular(j - 1) || !regular(j)) return false;
+    return curve_.normal.col(j).dot(curve_.normal.col(j - 1)) < kFarthestApart &&
+           old_normal_.col(j).dot(old_normal_.col(j - 1)) >= kFarthestApart;
   }
 
   // Goes down along the negative direction, by steps that grow while they succeed.
@@ -447,7 +455,8 @@ class NewtonKernel {
   bool definite_ = false;
   bool settled_ = false;
   double soft_energy_ = 0;
-  bool regular_ends_ = false;
+  bool regular_start_ = false;
+  bool regular_end_ = false;
   double ends_off_ = 0;
   Relaxation failure_ = Relaxation::stalled;
 };

@@ -42,7 +42,7 @@ struct NodalCurve {
   Eigen::MatrixXd jacobian;                         ///< (d k) x nodes, laid out as in PointBatch
   Eigen::Matrix<double, K, Eigen::Dynamic> weight;  ///< mu
   Nodes off;                                        ///< n = -J^+ F; nothing at the ends
-  Nodes normal;                                     ///< a unit normal (the first of k); nothing at the ends
+  Nodes normal;                                     ///< a unit normal (the first of k); nothing at a singular end
   Nodes force;                                      ///< K (x + n)
 
   void set_mesh(int degree, const std::vector<double>& element_lengths) {

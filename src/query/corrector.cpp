@@ -32,6 +32,8 @@ constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
 /// surface than this part of its length.
 constexpr double kGentleSegments = 96;
 constexpr double kGentleOff = 0.1;
+/// So it is where another start has led to a geodesic, if it promises one that is not longer by more than this part.
+constexpr double kPromise = 0.01;
 /// Points of more coordinates are not printed.
 constexpr Index kMostPrinted = 16;
 
@@ -186,6 +188,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
   const std::vector<StartPath> chosen = selects ? contenders(starts.paths) : starts.paths;
   std::optional<Corrected> best;
   std::vector<PathCandidate> candidates;
+  std::vector<const StartPath*> failed;
   Hope hope;
   for (const StartPath& start : chosen) {
     if (!options_.all && hope.is_lost(start)) break;
@@ -194,20 +197,21 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
     if (geodesic.status == Status::ok) {
       hope.found(start, geodesic.length);
       add_candidate(candidates, candidate_of(geodesic));
+    } else if (!is_geodesic(geodesic)) {
+      failed.push_back(&start);
     }
     if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
   }
-  // With cells, finer ones are the better help.
-  if (options_.method == CorrectionMethod::newton && !starts.cells && starts.cell == 0 &&
-      !is_geodesic(best->geodesic)) {
-    for (const StartPath& start : chosen) {
-      std::optional<NewtonResult> gently = correct_gently(start.points);
-      if (!gently) continue;
-      best = Corrected{*std::move(gently), {}, start.points};
-      explain(*best);
-      if (best->geodesic.status == Status::ok) add_candidate(candidates, candidate_of(best->geodesic));
-      break;
-    }
+  // A start from which nothing came, though it is as short as what was found, may lead to the shortest path.
+  if (options_.method != CorrectionMethod::newton) failed.clear();
+  for (const StartPath* start : failed) {
+    if (is_geodesic(best->geodesic) && start->length > (1 + kPromise) * best->geodesic.length) continue;
+    std::optional<NewtonResult> gently = correct_gently(start->points);
+    if (!gently) continue;
+    if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));
+    if (!is_better(*gently, best->geodesic)) continue;
+    best = Corrected{*std::move(gently), {}, start->points};
+    explain(*best);
   }
   static_cast<Geodesic&>(result) = std::move(best->geodesic);
   result.message = std::move(best->message);

@@ -82,6 +82,34 @@ TEST(ShortestPath, TriaxialEllipsoidAgreesWithGeographicLib) {
   EXPECT_NEAR(path.length, 3.2689702, 5e-8);
 }
 
+TEST(ShortestPath, FollowsTheSharpRimOfAFlatEllipsoid) {
+  // Axes 1 : 1 : 0.02, the rim's radius of curvature 0.0004; lengths from GeographicLib's GeodesicExact.
+  struct Pair {
+    Eigen::Vector3d from, to;
+    double length;
+  };
+  const std::vector<Pair> pairs{
+      {{0.7429387099798701, 0.073630634553076307, -0.013305947585478572},
+       {0.41831216192227894, 0.2355626721463743, 0.01754451666680127},
+       0.83277740096695674},
+      {{-0.24559019838375476, 0.91795531179662315, -0.006230361145301044},
+       {-0.80484054784205095, -0.46935601434844992, 0.0072646162828946467},
+       1.5768011703284746},
+      {{0.55826129820910342, 0.73777921855272932, -0.007590155402720301},
+       {-0.26782387372778593, -0.96344258634936297, 0.00013965023436156803},
+       1.8924221919571398},
+      {{-0.054641176727752969, 0.95746390327204289, -0.0056666468298940537},
+       {0.23413857355433895, 0.62053925122254194, 0.01496810163068258},
+       0.5121406888460438},
+  };
+  PathSolver solver(parse_surface("x^2+y^2+(z/0.02)^2=1"));
+  for (const Pair& pair : pairs) {
+    const PathResult path = solver.solve(pair.from, pair.to);
+    EXPECT_EQ(path.status, Status::ok) << path.message;
+    EXPECT_LE(std::abs(path.length - pair.length), path.length_error + 1e-14) << pair.length;
+  }
+}
+
 TEST(ShortestPath, DoesNotDependOnTheCells) {
   const Surface tangle = test::tangle_cube();
   const Vector p = Eigen::Vector3d(2, 0.7, 0.7);
