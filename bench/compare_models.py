@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Taut against exact polyhedral geodesics on the meshes of a folder, as a Markdown table.
 
-    compare_models.py --taut build/release/apps/taut --opponent build/bench/bench/opponent_polyhedral FOLDER [NAME ...]
+    compare_models.py --taut build/release/taut --opponent build/bench/bench/opponent_polyhedral FOLDER [NAME ...]
 
 For each mesh (.obj .off .ply .stl; those named, or all) three pairs of its vertices are joined: by `taut path` on the surface
 fitted to the vertices, and by the opponent on the mesh itself. Columns: lengths, their relative difference, how far Taut's path
