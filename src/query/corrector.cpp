@@ -34,6 +34,7 @@ constexpr double kGentleSegments = 96;
 constexpr double kGentleOff = 0.1;
 /// So it is where another start has led to a geodesic, if it promises one that is not longer by more than this part.
 constexpr double kPromise = 0.01;
+constexpr int kMostGentle = 4;
 /// Points of more coordinates are not printed.
 constexpr Index kMostPrinted = 16;
 
@@ -182,7 +183,7 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
   return result;
 }
 
-bool Corrector::correct(PathResult& result, const Starts& starts) {
+bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   const Stopwatch watch;
   const bool selects = options_.method == CorrectionMethod::newton && !options_.all && starts.paths.size() > 1;
   const std::vector<StartPath> chosen = selects ? contenders(starts.paths) : starts.paths;
@@ -202,10 +203,14 @@ bool Corrector::correct(PathResult& result, const Starts& starts) {
     }
     if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
   }
-  // A start from which nothing came, though it is as short as what was found, may lead to the shortest path.
+  // A start from which nothing came, though it is as short as what was found, may lead to the shortest path. Where
+  // nothing was found, finer cells are the better help.
   if (options_.method != CorrectionMethod::newton) failed.clear();
+  int tries = surface_.samples() == nullptr ? kMostGentle : 0;  // seconds on a fitted surface
   for (const StartPath* start : failed) {
-    if (is_geodesic(best->geodesic) && start->length > (1 + kPromise) * best->geodesic.length) continue;
+    const bool found = is_geodesic(best->geodesic);
+    const bool promises = tries-- > 0 && start->length <= (1 + kPromise) * best->geodesic.length;
+    if (found ? !promises : !last) break;
     std::optional<NewtonResult> gently = correct_gently(start->points);
     if (!gently) continue;
     if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));

@@ -18,8 +18,8 @@ class Corrector {
 
   /// Corrects every start that may lead to the shortest path. The best one becomes the Geodesic part of `result`, the
   /// others its candidates. False when the outcome is in doubt: nothing converged, or a start that promised a clearly
-  /// shorter path has not led to one.
-  [[nodiscard]] bool correct(PathResult& result, const Starts& starts);
+  /// shorter path has not led to one. `last`: no other starts will be tried.
+  [[nodiscard]] bool correct(PathResult& result, const Starts& starts, bool last);
 
  private:
   struct Corrected {

@@ -138,7 +138,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   if (!first) {
     const Starts starts = finder.find_by_table(p, q);
     take(starts);
-    if (!starts.paths.empty() && corrector.correct(result, starts)) return result;
+    if (!starts.paths.empty() && corrector.correct(result, starts, false)) return result;
   }
   // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
@@ -174,13 +174,14 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
                                levels().size(level)));
       continue;
     }
-    sure = corrector.correct(result, starts);
-    marched = starts.paths.front().length;
+    // Within a cell the start is as good as it gets; without cells there is no other.
+    const bool only = !levels().exist() || (p - q).norm() < result.cell;
     const bool second_try = best.has_value();
+    const bool last = only || second_try || level + 1 == levels().num_levels();
+    sure = corrector.correct(result, starts, last) || only;
+    marched = starts.paths.front().length;
     if (!best || detail::is_better(result, *best)) best = result;
     best->seconds = result.seconds;
-    // Within a cell the start is as good as it gets; without cells there is no other.
-    sure = sure || !levels().exist() || (p - q).norm() < result.cell;
     if (sure || second_try) break;
   }
   if (!best) {
