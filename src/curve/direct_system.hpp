@@ -120,8 +120,10 @@ class DirectSystem {
   }
 
   /// After factor(curve, true, true) failed: a direction in which the energy does not rise; after confirm_minimum the
-  /// softest. It is nearly neutral where a conjugate point is close to the end (as between antipodes of a sphere).
+  /// softest. It is nearly neutral where a conjugate point is close to the end (as between antipodes of a sphere). None
+  /// where the energy falls within an element already: the pivots say nothing then.
   SoftDirection soft_direction(const Curve& curve, Evaluator& /*evaluator*/) {
+    if (!chain_.condensed()) return {};
     const Index end = chain_.first_failing() < 0 ? curve.num_elements() - 1 : chain_.first_failing();
     if (end <= 0) return {};
     SoftDirection soft;
@@ -165,7 +167,7 @@ class DirectSystem {
     return chain_.least_pivot(last) < kWeak * stiffness ? Confirmation::soft : Confirmation::minimum;
   }
   /// Was the last factored matrix positive definite.
-  [[nodiscard]] bool minimum() const { return chain_.first_failing() < 0; }
+  [[nodiscard]] bool minimum() const { return chain_.condensed() && chain_.first_failing() < 0; }
   [[nodiscard]] int num_negative() const { return chain_.num_negative(); }
   /// Is every element alone positive definite: fine enough a mesh to tell minima by the pivots.
   [[nodiscard]] bool resolved() const { return resolved_; }

@@ -66,6 +66,7 @@ class NewtonDriver : public NewtonSolver::Backend {
  private:
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
+  static constexpr int kMostCuts = 11;  // of a coarse segment, into halves
   static constexpr int kMaxCycles = 14;
   static constexpr double kSoftRounding = 1e-11;  // of the length: differences along neutral directions below
   static constexpr double kTooWeak = 3e-5;       // gradients, of the strongest: the second variation says nothing below
@@ -95,18 +96,18 @@ class NewtonDriver : public NewtonSolver::Backend {
     kernel_.nodes() = at_arc_lengths(path, arcs);
     RelaxationGoal goal{.energy = 1e-5, .off_surface = 1e-3 * length, .max_iterations = 0, .minimum = true};
     // Nodes first: enough of them that the normal turns moderately from one to the next.
-    for (int cycle = 0; cycle < 12; ++cycle) {
+    for (int cycle = 0;; ++cycle) {
       const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
       if (outcome != Relaxation::stalled) return outcome;
-      if (!refine_coarse(options_.leave_saddles ? kWideTurn : 0.25, &path, arcs)) break;
+      if (cycle == kMostCuts || !refine_coarse(options_.leave_saddles ? kWideTurn : 0.25, &path, arcs)) break;
     }
     if (!options_.leave_saddles)
       return Relaxation::converged;  // a saddle must not be slid off: straight to high degree
     goal.max_iterations = std::min(60, options_.max_iterations);
-    for (int cycle = 0; cycle < 12; ++cycle) {
+    for (int cycle = 0;; ++cycle) {
       const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
       if (outcome != Relaxation::converged) return outcome;
-      if (!refine_coarse(coarse_turn, nullptr, arcs)) break;
+      if (cycle == kMostCuts || !refine_coarse(coarse_turn, nullptr, arcs)) break;
       goal.max_iterations = std::min(60, std::max(0, options_.max_iterations - kernel_.num_iterations()));
     }
     return Relaxation::converged;
@@ -253,9 +254,9 @@ class NewtonDriver : public NewtonSolver::Backend {
                           .max_iterations = options_.max_iterations - kernel_.num_iterations(),
                           .minimum = options_.leave_saddles};
       outcome = kernel_.relax(*evaluator_, goal, *context_);
+      checker_.inspect(*evaluator_, kernel_, check_);
       if (outcome == Relaxation::singular || outcome == Relaxation::off_surface || outcome == Relaxation::collapsed)
         break;
-      checker_.inspect(*evaluator_, kernel_, check_);
       if (!check_.regular) return Relaxation::singular;
       const double error = check_.length_error;
       if (outcome == Relaxation::converged && accurate(error) && kernel_.resolved()) break;
@@ -267,7 +268,7 @@ class NewtonDriver : public NewtonSolver::Backend {
         if (error > 0.9 * before && ++slow >= 4) break;
       }
       before = error;
-      if (!refine_fine()) break;
+      if (cycle + 1 == kMaxCycles || !refine_fine()) break;
     }
     return outcome;
   }

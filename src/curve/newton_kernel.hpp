@@ -118,11 +118,11 @@ class NewtonKernel {
 
   /// Moves the nodes to a geodesic.
   Relaxation relax(Evaluator& evaluator, const RelaxationGoal& goal, const Context& context) {
-    Relaxation outcome = project(evaluator);
-    if (outcome != Relaxation::converged) return outcome;
+    const Relaxation projected = project(evaluator);
+    if (projected != Relaxation::converged) return projected;
     const double start_energy = energy_;
-    double push = 0.03;
-    bool sunk = false;
+    push_ = kFirstPush;
+    sunk_ = false;
     const int last = iterations_ + goal.max_iterations;
     while (iterations_ < last) {
       context.check_cancelled();
@@ -130,107 +130,140 @@ class NewtonKernel {
       settled_ = false;
       soft_energy_ = 0;
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
-      system_.linearise(evaluator, curve_, frame_);
-      const double worthless = std::max(goal.energy, 4e-16) * energy_;
-      definite_ = system_.factor(curve_, evaluator, true, true);
-      bool descend = true;  // towards a minimum: the energy has to fall
-      SoftDirection soft;
-      if (!definite_) {
-        soft = system_.soft_direction(curve_, evaluator);
-        descend = goal.minimum || system_.minimum() || !system_.factor(curve_, evaluator, true, false);
-        if (descend && !system_.factor(curve_, evaluator, false, true)) return Relaxation::stalled;
-      }
-      const double slope = system_.solve(step_);
-      decrement_ = 0.5 * std::abs(slope);
-      const bool flat = decrement_ <= worthless;
-      if (flat && definite_) {
-        const Confirmation found = system_.confirm_minimum(curve_, evaluator, worthless);
-        if (found == Confirmation::too_coarse) continue;
-        if (found == Confirmation::soft) {
-          soft = system_.soft_direction(curve_, evaluator);
-          if (soft.curvature <= 0) {
-            definite_ = false;
-            descend = goal.minimum;
-          }
-        }
-      }
-      const bool negative = soft.relative() < -kNeutral;
-      const bool level = soft.found && std::abs(soft.relative()) < kLevel && degree() > 1 && goal.minimum;
-      if (level && decrement_ <= kInValley * energy_ && !sunk) {
-        // Curvatures as small as that are known only from a curve on the floor of the valley.
-        sunk = true;
-        sink(evaluator);
-        continue;
-      }
-      if (level && decrement_ <= kInValley * energy_ && !definite_) {
-        soft_energy_ = energy_along(soft);
-        if (soft_energy_ > worthless) {
-          system_.soft_step(step_);
-          step_ *= kReach * length() / soft.longest;
-          sunk = false;
-          if (slide(evaluator)) continue;
-          sunk = true;
-          if (!system_.factor(curve_, evaluator, false, true)) return Relaxation::stalled;
-        }
-        if (flat) (void)system_.confirm_minimum(curve_, evaluator, worthless);
-        system_.solve(step_);
-      } else if (negative && goal.minimum && decrement_ <= kInValley * energy_) {
-        if (leave_saddle(evaluator, slope, push)) continue;
-        system_.solve(step_);
-      }
-      if (flat && negative && goal.minimum) return Relaxation::saddle;
-      if (flat) {
-        // Along a nearly neutral direction (conjugate ends) even a worthless step is long: then only go to the surface.
-        const double longest = step_.colwise().norm().maxCoeff();
-        const bool short_step = longest * longest <= goal.off_surface * period_;
-        if (definite_ && !short_step && !sunk && degree() > 1 && goal.minimum &&
-            2 * decrement_ < kLevel * curve_.apply_stiffness(step_, old_normal_, vector_)) {
-          sunk = true;
-          sink(evaluator);
-          continue;
-        }
-        if (off_surface_ <= goal.off_surface) {
-          curve_.x = base_;
-          settled_ = (definite_ || !descend) && short_step;
-          if (settled_) curve_.x += step_;
-          return Relaxation::converged;
-        }
-        if (decrement_ <= 1e-2 * goal.energy * energy_) {
-          curve_.x = base_;
-          visit(evaluator);
-          if (!measure()) return Relaxation::singular;
-          continue;
-        }
-      }
-      const bool valley = definite_ && descend && degree() > 1 && decrement_ <= kInValley * energy_;
-      const bool fresh = sunk;
-      sunk = false;
-      if (search(evaluator, slope, !descend, valley ? kFewHalvings : kMostHalvings)) continue;
-      if (valley) {
-        step_ = trial_step_;
-        restore(evaluator);
-        if (slide(evaluator)) continue;
-        sunk = fresh;
-        if (search(evaluator, slope, !descend, kMostHalvings)) continue;
-      }
-      if (flat) return Relaxation::converged;
-      // Close to a conjugate point a Newton step can be too long to be of use; shortening still is.
-      if (!definite_ || !descend || !shorten(evaluator, goal)) return failure_;
+      Progress progress = plan(evaluator, goal);
+      if (progress == Progress::planned) progress = explore(evaluator, goal);
+      if (progress == Progress::planned && plan_.flat) progress = finish(evaluator, goal);
+      if (progress == Progress::planned) progress = advance(evaluator, goal);
+      if (progress == Progress::ended) return outcome_;
     }
     return Relaxation::stalled;
   }
 
  private:
-  static constexpr double kNeutral = 1e-7;   // of the stiffness: curvature below is that of (nearly) conjugate ends
-  static constexpr double kReach = 0.25;     // of the length: how far curves are looked for along a soft direction
-  static constexpr double kInValley = 1e-3;  // of the energy: where all but soft directions have settled
-  static constexpr double kLevel = 1e-4;     // of the stiffness: curvature below is known only close to the geodesic
-  static constexpr double kExact = 1e-24;    // of the energy
+  static constexpr double kNeutral = 1e-7;    // of the stiffness: curvature below is that of (nearly) conjugate ends
+  static constexpr double kReach = 0.25;      // of the length: how far curves are looked for along a soft direction
+  static constexpr double kInValley = 1e-3;   // of the energy: where all but soft directions have settled
+  static constexpr double kLevel = 1e-4;      // of the stiffness: curvature below is known only close to the geodesic
+  static constexpr double kExact = 1e-24;     // of the energy
+  static constexpr double kFirstPush = 0.03;  // of the length: the first step away from a saddle
   static constexpr int kMostSinking = 30;
   static constexpr int kMostHalvings = 30;
   static constexpr int kFewHalvings = 2;
   static constexpr double kFarthestApart = 0.2;  // cosine between the normals of neighbours
   static constexpr double kMostTurn = 0.7;       // radians a node may move around its surface in one step
+
+  // What an iteration is about to do with step_, and what it knows about the second variation.
+  struct Plan {
+    double slope = 0;      // dE step_
+    double worthless = 0;  // energy not worth a step
+    bool flat = false;     // step_ promises no more than that
+    bool descend = true;   // towards a minimum: the energy has to fall
+    SoftDirection soft;
+    [[nodiscard]] bool negative() const { return soft.relative() < -kNeutral; }
+  };
+  // How an iteration goes on after one of its parts.
+  enum class Progress {
+    planned,  // step_ is still to be taken
+    moved,    // the curve has moved, or has to be looked at again
+    ended,    // with outcome_
+  };
+  Progress end(Relaxation outcome) {
+    outcome_ = outcome;
+    return Progress::ended;
+  }
+
+  // Newton's step, or a shortening one where the energy is not convex.
+  Progress plan(Evaluator& evaluator, const RelaxationGoal& goal) {
+    system_.linearise(evaluator, curve_, frame_);
+    plan_ = {};
+    plan_.worthless = std::max(goal.energy, 4e-16) * energy_;
+    definite_ = system_.factor(curve_, evaluator, true, true);
+    if (!definite_) {
+      plan_.soft = system_.soft_direction(curve_, evaluator);
+      plan_.descend = goal.minimum || system_.minimum() || !system_.factor(curve_, evaluator, true, false);
+      if (plan_.descend && !system_.factor(curve_, evaluator, false, true)) return end(Relaxation::stalled);
+    }
+    plan_.slope = system_.solve(step_);
+    decrement_ = 0.5 * std::abs(plan_.slope);
+    plan_.flat = decrement_ <= plan_.worthless;
+    if (!plan_.flat || !definite_) return Progress::planned;
+    switch (system_.confirm_minimum(curve_, evaluator, plan_.worthless)) {
+      case Confirmation::minimum: break;
+      case Confirmation::too_coarse: return Progress::moved;
+      case Confirmation::soft:
+        plan_.soft = system_.soft_direction(curve_, evaluator);
+        if (plan_.soft.curvature > 0) break;
+        definite_ = false;
+        plan_.descend = goal.minimum;
+    }
+    return Progress::planned;
+  }
+
+  // Where all but soft directions have settled: along them, down a valley or off a saddle.
+  Progress explore(Evaluator& evaluator, const RelaxationGoal& goal) {
+    if (!goal.minimum || decrement_ > kInValley * energy_) return Progress::planned;
+    const bool level = plan_.soft.found && std::abs(plan_.soft.relative()) < kLevel && degree() > 1;
+    // Curvatures as small as that are known only from a curve on the floor of the valley.
+    if (level && !sunk_) return sink_once(evaluator);
+    if (level && !definite_) {
+      soft_energy_ = energy_along(plan_.soft);
+      if (soft_energy_ > plan_.worthless) {
+        system_.soft_step(step_);
+        step_ *= kReach * length() / plan_.soft.longest;
+        sunk_ = false;
+        if (slide(evaluator)) return Progress::moved;
+        sunk_ = true;
+        if (!system_.factor(curve_, evaluator, false, true)) return end(Relaxation::stalled);
+      }
+      if (plan_.flat) (void)system_.confirm_minimum(curve_, evaluator, plan_.worthless);
+      system_.solve(step_);
+    } else if (plan_.negative()) {
+      if (leave_saddle(evaluator)) return Progress::moved;
+      system_.solve(step_);
+    }
+    return Progress::planned;
+  }
+
+  // With a worthless step left.
+  Progress finish(Evaluator& evaluator, const RelaxationGoal& goal) {
+    if (plan_.negative() && goal.minimum) return end(Relaxation::saddle);
+    // Along a nearly neutral direction (conjugate ends) even a worthless step is long: then only go to the surface.
+    const double longest = step_.colwise().norm().maxCoeff();
+    const bool short_step = longest * longest <= goal.off_surface * period_;
+    if (definite_ && !short_step && !sunk_ && degree() > 1 && goal.minimum &&
+        2 * decrement_ < kLevel * curve_.apply_stiffness(step_, old_normal_, vector_)) {
+      return sink_once(evaluator);
+    }
+    if (off_surface_ <= goal.off_surface) {
+      curve_.x = base_;
+      settled_ = (definite_ || !plan_.descend) && short_step;
+      if (settled_) curve_.x += step_;
+      return end(Relaxation::converged);
+    }
+    if (decrement_ > 1e-2 * goal.energy * energy_) return Progress::planned;
+    curve_.x = base_;
+    visit(evaluator);
+    return measure() ? Progress::moved : end(Relaxation::singular);
+  }
+
+  // Takes the step as far as it leads down.
+  Progress advance(Evaluator& evaluator, const RelaxationGoal& goal) {
+    const bool valley = definite_ && plan_.descend && degree() > 1 && decrement_ <= kInValley * energy_;
+    const bool fresh = sunk_;
+    sunk_ = false;
+    if (search(evaluator, plan_.slope, !plan_.descend, valley ? kFewHalvings : kMostHalvings)) return Progress::moved;
+    if (valley) {
+      step_ = trial_step_;
+      restore(evaluator);
+      if (slide(evaluator)) return Progress::moved;
+      sunk_ = fresh;
+      if (search(evaluator, plan_.slope, !plan_.descend, kMostHalvings)) return Progress::moved;
+    }
+    if (plan_.flat) return end(Relaxation::converged);
+    // Close to a conjugate point a Newton step can be too long to be of use; shortening still is.
+    if (definite_ && plan_.descend && shorten(evaluator, goal)) return Progress::moved;
+    return end(failure_);
+  }
 
   // F, J (and what the system wants) at the nodes.
   void visit(Evaluator& evaluator) {
@@ -318,6 +351,12 @@ class NewtonKernel {
     if (soft.longest <= 0) return 0;
     const double reach = length() / soft.longest;
     return reach * soft.slope + reach * reach * std::abs(soft.curvature) / 2;
+  }
+
+  Progress sink_once(Evaluator& evaluator) {
+    sunk_ = true;
+    sink(evaluator);
+    return Progress::moved;
   }
 
   // Shortening steps to the floor of a valley, until they gain no less than the one before: only the way along it is
@@ -422,15 +461,15 @@ class NewtonKernel {
   }
 
   // Goes down along the negative direction, by steps that grow while they succeed.
-  bool leave_saddle(Evaluator& evaluator, double slope, double& push) {
+  bool leave_saddle(Evaluator& evaluator) {
     system_.soft_step(step_);
     const double longest = step_.colwise().norm().maxCoeff();
     if (!(longest > 0)) return false;
-    step_ *= push * length() / longest;
+    step_ *= push_ * length() / longest;
     const double before = energy_;
     if (!search(evaluator, 0, false, kMostHalvings)) return false;
-    push = std::min(0.2, 2 * push);
-    return energy_ < before - 1e-13 * before || slope < -1e-13 * before;
+    push_ = std::min(0.2, 2 * push_);
+    return energy_ < before - 1e-13 * before || plan_.slope < -1e-13 * before;
   }
 
   Index d_;
@@ -458,7 +497,11 @@ class NewtonKernel {
   bool regular_start_ = false;
   bool regular_end_ = false;
   double ends_off_ = 0;
-  Relaxation failure_ = Relaxation::stalled;
+  Plan plan_;
+  double push_ = kFirstPush;                  // how far to go from a saddle, of the length
+  bool sunk_ = false;                         // the curve lies on the floor of a valley
+  Relaxation failure_ = Relaxation::stalled;  // why the last search found nothing
+  Relaxation outcome_ = Relaxation::stalled;
 };
 
 }  // namespace taut::detail

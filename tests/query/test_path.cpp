@@ -264,5 +264,26 @@ TEST(PathSolver, ThreadsDoNotChangeTheResult) {
   EXPECT_EQ(one.points, four.points);
 }
 
+// A correction that is taken to its limits (a rim 2,500 times as sharp as the body is wide) must not meet what an
+// earlier one has left in its buffers.
+TEST(PathSolver, AnswersDoNotDependOnWhatWasAskedBefore) {
+  const Surface disc = parse_surface("x^2+y^2+z^2/0.0004=1");
+  constexpr Index kPairs = 3;
+  Points from(3, kPairs), to(3, kPairs);
+  from << -0.84976086, 0.395410285, 0.812471584, 0.30875513, 0.709678255, -0.551859762, 0.00854580016, 0.0116620321,
+      0.00375982592;
+  to << 0.460458541, 0.208860177, 0.709999975, 0.478628646, -0.183938383, 0.678078595, -0.0149518233, -0.0192098318,
+      -0.00380049763;
+  PathSolver solver(disc);
+  const std::vector<PathResult> there = solver.solve_pairs(from, to);
+  const std::vector<PathResult> back = solver.solve_pairs(from.rowwise().reverse(), to.rowwise().reverse());
+  for (Index j = 0; j < kPairs; ++j) {
+    const PathResult& one = there[static_cast<std::size_t>(j)];
+    const PathResult& other = back[static_cast<std::size_t>(kPairs - 1 - j)];
+    EXPECT_EQ(one.length, other.length) << "pair " << j;
+    EXPECT_EQ(one.num_iterations, other.num_iterations) << "pair " << j;
+  }
+}
+
 }  // namespace
 }  // namespace taut
