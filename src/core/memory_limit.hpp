@@ -6,7 +6,7 @@
 
 namespace taut::detail {
 
-/// Bytes a job under this context may hold: its limit, or half of the machine's memory.
+/// Bytes a job under this context may hold: its limit, or half of what the machine gives to this process.
 [[nodiscard]] std::size_t memory_limit(const Context& context);
 
 }  // namespace taut::detail

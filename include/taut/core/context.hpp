@@ -21,7 +21,8 @@ struct Context {
   std::function<void(std::string_view message)> note = nullptr;
   /// Raise it from anywhere (a signal handler, another thread) to stop: the job throws `Cancelled` within milliseconds.
   const std::atomic<bool>* cancel = nullptr;
-  /// Bytes a job may hold; a job that would need more throws `OutOfMemory`. 0 = half of the machine's memory.
+  /// Bytes a job may hold; a job that would need more throws `OutOfMemory`. 0 = half of the machine's memory, or of the
+  /// limit of this process or container where that is less.
   std::size_t memory_limit = 0;
 
   void report(std::string_view stage, double done) const {
