@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Time against accuracy for one pair of points: Taut, GeographicLib, and meshes of the same surface, in one run.
 
-    accuracy_table.py BUILD [--plot FILE.svg] [--pairs N]
+    accuracy_table.py BUILD [--plot FILE.svg] [--pairs N] [--large-pairs N]
 
 BUILD: a build folder of the preset `bench`. Prints a Markdown table: per surface and method the time to prepare (cells and
 table; mesh; factorization), the median time a pair, and the median relative error. Meshes are Taut's own, with vertices exactly on
 the surface, and their pairs are vertices, so that nothing but the mesh itself is to blame; their truth is `taut path --tol 1e-13`.
-Exact polyhedral distances are left out at 500,000 triangles, where one takes minutes.
+Exact polyhedral distances at 500,000 triangles take minutes each: they come last, and of fewer pairs (--large-pairs, 0 leaves them
+out).
 """
 
 import argparse
@@ -32,33 +33,39 @@ def output(*command):
     return subprocess.run([str(c) for c in command], capture_output=True, text=True, check=True).stdout
 
 
-def mesh_rows(build, surface, pairs_file, count, folder):
-    """Rows of the opponents on meshes of three sizes."""
-    formula, cells = FORMULAS[surface]
-    rows = []
-    for size, cell in cells.items():
-        mesh = folder / f"{surface}_{size}.obj"
+class Mesh:
+    """A surface's mesh of one size, and the pairs of its vertices that the opponents are asked about."""
+
+    def __init__(self, build, surface, size, pairs_file, count, folder):
+        formula, cells = FORMULAS[surface]
+        self.build, self.surface = build, surface
+        self.file = folder / f"{surface}_{size}.obj"
         begin = time.monotonic()
-        output(build / "taut", "mesh", formula, "--cell", cell, "--out", mesh, "--quiet")
-        meshing = time.monotonic() - begin
-        triangles = sum(line.startswith("f ") for line in mesh.open())
-        lines = output(build / "bench/opponent_heat", mesh, pairs_file, count).splitlines()
+        output(build / "taut", "mesh", formula, "--cell", cells[size], "--out", self.file, "--quiet")
+        self.meshing = time.monotonic() - begin
+        with self.file.open() as lines:
+            self.triangles = sum(line.startswith("f ") for line in lines)
+        lines = output(build / "bench/opponent_heat", self.file, pairs_file, count).splitlines()
+        self.factorizing = float(lines[0])
         fields = [[float(x) for x in line.split(",")] for line in lines[1:]]
-        fields = [f for f in fields if f[:3] != f[3:6]]
-        ends = folder / "ends.csv"
-        ends.write_text("".join(",".join(repr(x) for x in f[:6]) + "\n" for f in fields))
-        truth = [float(line.split(",")[0]) for line in
-                 output(build / "taut", "path", formula, "--pairs", ends, "--tol", "1e-13", "--quiet").splitlines()]
-        error = statistics.median(abs(f[6] / t - 1) for f, t in zip(fields, truth))
-        rows.append((surface, "heat", f"{triangles:,}", meshing + float(lines[0]),
-                     1e6 * statistics.median(f[7] for f in fields), error))
-        if size == "500k":
-            continue
-        exact = list(csv.DictReader(io.StringIO(output(build / "bench/opponent_polyhedral", mesh, ends))))
-        error = statistics.median(abs(float(e["length"]) / t - 1) for e, t in zip(exact, truth))
-        rows.append((surface, "polyhedral", f"{triangles:,}", meshing,
-                     1e6 * statistics.median(float(e["seconds"]) for e in exact), error))
-    return rows
+        self.fields = [f for f in fields if f[:3] != f[3:6]]
+        self.ends = self.file.with_suffix(".csv")
+        self.ends.write_text("".join(",".join(repr(x) for x in f[:6]) + "\n" for f in self.fields))
+        self.truth = [float(line.split(",")[0]) for line in
+                      output(build / "taut", "path", formula, "--pairs", self.ends, "--tol", "1e-13", "--quiet").splitlines()]
+
+    def row(self, method, prepare, lengths, seconds):
+        error = statistics.median(abs(length / truth - 1) for length, truth in zip(lengths, self.truth))
+        return (self.surface, method, f"{self.triangles:,}", prepare, 1e6 * statistics.median(seconds), error)
+
+    def heat(self):
+        return self.row("heat", self.meshing + self.factorizing, [f[6] for f in self.fields], [f[7] for f in self.fields])
+
+    def polyhedral(self, count):
+        lines = self.ends.read_text().splitlines(keepends=True)
+        self.ends.write_text("".join(lines[:count]))
+        exact = list(csv.DictReader(io.StringIO(output(self.build / "bench/opponent_polyhedral", self.file, self.ends))))
+        return self.row("polyhedral", self.meshing, [float(e["length"]) for e in exact], [float(e["seconds"]) for e in exact])
 
 
 def plot(rows, file):
@@ -100,6 +107,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--plot", type=pathlib.Path)
     parser.add_argument("--pairs", type=int, default=10, help="pairs for the opponents on meshes")
+    parser.add_argument("--large-pairs", type=int, default=1, help="pairs for exact polyhedral distances at 500,000 triangles")
     arguments = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as name:
@@ -108,10 +116,17 @@ def main():
         for row in table:
             rows.append((row["surface"], row["method"], row["setting"], float(row["prepare_s"]), float(row["us"]),
                          float(row["median_error"])))
-        for surface in FORMULAS:
-            rows += mesh_rows(arguments.build, surface, folder / f"{surface}.csv", arguments.pairs, folder)
+        meshes = [Mesh(arguments.build, surface, size, folder / f"{surface}.csv", arguments.pairs, folder)
+                  for surface in FORMULAS for size in FORMULAS[surface][1]]
+        rows += [mesh.heat() for mesh in meshes]
+        for mesh in sorted(meshes, key=lambda m: m.triangles):
+            pairs = arguments.large_pairs if mesh.triangles > 200_000 else arguments.pairs
+            if pairs > 0:
+                rows.append(mesh.polyhedral(pairs))
+    # By surface and method; the mesh methods' rows by size, as they come.
+    place = lambda row: (list(FORMULAS).index(row[0]), row[1] in ("heat", "polyhedral"), row[1] == "polyhedral")
     print("| surface | method | setting or triangles | to prepare, s | a pair, us | median error |\n|---|---|---|---|---|---|")
-    for surface, method, setting, prepare, us, error in sorted(rows, key=lambda r: list(FORMULAS).index(r[0])):
+    for surface, method, setting, prepare, us, error in sorted(rows, key=place):
         print(f"| {surface} | {method} | {setting} | {prepare:.2g} | {us:.3g} | {error:.1e} |")
     if arguments.plot:
         plot(rows, arguments.plot)
