@@ -71,7 +71,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
     json["candidates"].push_back(std::move(entry));
   }
   json["unique"] = nullptr;
-  if (result.rivals_sought || !result.unique) json["unique"] = result.unique;
+  if (has_path(result) && (result.rivals_sought || !result.unique)) json["unique"] = result.unique;
   json["method"] = to_string(options.method);
   json["cell"] = result.cell;
   json["cells"] = result.num_cells;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "cells/normal_turn.hpp"
 #include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
 #include "march/chart_march.hpp"
@@ -26,9 +27,6 @@ constexpr double kEndSpacings = 1;
 /// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
 constexpr double kSameWaySpacings = 0.8;
 constexpr double kSameWay = 0.15;
-
-/// Two cells lie on the same side of the surface if their normals turn by less than this (cosine).
-constexpr double kSameSide = 0.5;
 
 /// Landmarks that share the memory of a march, and a cache line of the table.
 constexpr Index kLandmarksAtATime = 16;
@@ -66,7 +64,8 @@ void DistanceTable::choose_landmarks(Index count) {
     for (Index i = 0; i < cells_.num_cells(); ++i) {
       if (!cells_.valid(i)) continue;
       const auto near = [&](Index other) {
-        return (cells_.point(i) - cells_.point(other)).squaredNorm() < spacing_ * spacing_ && same_side(i, other);
+        return (cells_.point(i) - cells_.point(other)).squaredNorm() < spacing_ * spacing_ &&
+               detail::same_side(cells_.normals(i), cells_.normals(other));
       };
       if (std::none_of(landmarks_.begin(), landmarks_.end(), near)) landmarks_.push_back(i);
     }
@@ -222,14 +221,9 @@ std::vector<Index> DistanceTable::way_past(const View& from, const View& to, std
 /// True when the way runs past cell i, on the same side of the surface, within a distance.
 bool DistanceTable::passes(const std::vector<Index>& way, Index i, double distance) const {
   return std::any_of(way.begin(), way.end(), [&](Index j) {
-    return (cells_.point(i) - cells_.point(j)).squaredNorm() < distance * distance && same_side(i, j);
+    return (cells_.point(i) - cells_.point(j)).squaredNorm() < distance * distance &&
+           detail::same_side(cells_.normals(i), cells_.normals(j));
   });
-}
-
-bool DistanceTable::same_side(Index i, Index j) const {
-  if (cells_.codim() == 1) return cells_.normals(i).col(0).dot(cells_.normals(j).col(0)) > kSameSide;
-  return (cells_.normals(i).transpose() * cells_.normals(j)).squaredNorm() >
-         static_cast<double>(cells_.codim() - 1) + kSameSide * kSameSide;
 }
 
 std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const VectorIn& q,

@@ -7,9 +7,11 @@
 #include <limits>
 #include <utility>
 
+#include "cells/normal_turn.hpp"
 #include "core/disjoint_sets.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
+#include "march/point_normals.hpp"
 #include "march/stencil.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/descend.hpp"
@@ -148,14 +150,26 @@ class Ways {
   }
 
   void add(const BandCell& crossing, double spread) {
-    const auto x = cells_.point(crossing.cell);
-    for (const StartPath& path : paths_) {
+    for (std::size_t w = 0; w < paths_.size(); ++w) {
       // A longer way may share this part of a shorter one.
-      if (path.length > crossing.length + kNoise * least_) continue;
-      if ((path.points.colwise() - x).colwise().norm().minCoeff() < spread) return;
+      if (paths_[w].length > crossing.length + kNoise * least_) continue;
+      if (passes(paths_[w].points, normals_[w], crossing.cell, spread)) return;
     }
-    Points points = two_descents(surface_, cells_, from_p_, from_q_, x);
-    if (points.cols() > 0) paths_.push_back({crossing.length, std::move(points)});
+    Points points = two_descents(surface_, cells_, from_p_, from_q_, cells_.point(crossing.cell));
+    if (points.cols() == 0) return;
+    normals_.push_back(normals_at(surface_, points));
+    paths_.push_back({crossing.length, std::move(points)});
+  }
+
+  /// Does a way run past the cell within a distance, on the same side of the body: round a tube, ways may differ that
+  /// are as close to each other as the tube is thin.
+  [[nodiscard]] bool passes(const Points& points, const Points& normals, Index cell, double distance) const {
+    for (Index j = 0; j < points.cols(); ++j) {
+      if ((points.col(j) - cells_.point(cell)).squaredNorm() >= distance * distance) continue;
+      const Eigen::Map<const Points> there(normals.col(j).data(), cells_.dim(), cells_.codim());
+      if (same_side(there, cells_.normals(cell))) return true;
+    }
+    return false;
   }
 
   const Surface& surface_;
@@ -165,6 +179,7 @@ class Ways {
   const StartPathOptions& options_;
   std::vector<std::int32_t> place_;
   std::vector<StartPath> paths_;
+  std::vector<Points> normals_;  // of the paths' points, (d k) x n
   double least_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "query/cell_size.hpp"
+#include "query/normal_turns.hpp"
 #include "taut/cells/find_box.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
@@ -17,10 +18,13 @@ namespace {
 
 /// A point this many cells off the surface is a mistake, not a rounded coordinate.
 constexpr double kMostCellsOff = 10;
-/// The normal should turn by no more than this from one cell to the next, radians, as long as there are not too many.
+/// The normal should turn by no more than this from one cell to the next, radians, as long as there are not too many:
+/// nearly everywhere after so many refinements, else where the surface is typical (a flat body bends at its rim only).
 constexpr double kMostTurn = 0.7;
-constexpr double kTurnQuantile = 0.95;
-constexpr int kMostRefinements = 2;
+constexpr double kNearlyEverywhere = 0.95;
+constexpr double kTypically = 0.75;
+constexpr int kRefinementsForRims = 2;
+constexpr int kMostRefinements = 12;
 constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
 constexpr double kPointsPerSide = 16;
@@ -85,7 +89,10 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
 void CellLevels::refine_to_curvature() {
   std::shared_ptr<SurfaceCells>& coarsest = complete_.front();
   for (int i = 0; i < kMostRefinements && surface_.dim() == 3; ++i) {
-    if (normal_turn(*coarsest, kTurnQuantile) <= kMostTurn || 4 * coarsest->num_cells() > kMostRefinedCells) return;
+    NormalTurns turns(*coarsest);
+    resolved_ = turns.make_a_sheet() && turns.quantile(kTypically) <= kMostTurn;
+    const bool enough = resolved_ && (i >= kRefinementsForRims || turns.quantile(kNearlyEverywhere) <= kMostTurn);
+    if (enough || 4 * coarsest->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest = subdivided(size_);
   }

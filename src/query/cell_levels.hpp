@@ -40,6 +40,10 @@ class CellLevels {
   /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
   [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;
 
+  /// False when the cells of level 0 are coarser than the surface bends, and finer ones would be too many: marched
+  /// distances may miss ways then. Known once there are such cells.
+  [[nodiscard]] bool resolved() const { return resolved_; }
+
   /// x (d) brought onto the surface. `name` ("start") says in messages which point it is. Throws InvalidArgument when
   /// x does not fit the surface or lies more than ten cells off it; a move of more than one cell is told.
   [[nodiscard]] Vector on_surface(const VectorIn& x, const char* name) const;
@@ -54,6 +58,7 @@ class CellLevels {
   Context context_;
   double cell_;
   double size_ = 0;  // h of level 0; 0 until prepared
+  bool resolved_ = true;
   Box box_;
   std::mutex mutex_;
   std::vector<std::shared_ptr<SurfaceCells>> complete_;  // a level each, null until asked for

@@ -6,9 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "cells/normal_turn.hpp"
 #include "surface/rbf/kd_tree.hpp"
-#include "taut/cells/surface_cells.hpp"
 
 namespace taut::detail {
 namespace {
@@ -50,27 +48,6 @@ double cell_size_for_samples(const PointCloud& samples) {
   if (samples.size() < 2 * kNeighbour) return coarse;
   const double finest = box.extent().maxCoeff() / kMostCellsPerSide;
   return std::clamp(2 * sample_spacing(samples.points), std::min(finest, coarse), coarse);
-}
-
-double normal_turn(const SurfaceCells& cells, double quantile) {
-  const CellGrid& grid = cells.grid();
-  const auto d = static_cast<std::size_t>(cells.dim());
-  std::vector<double> turns;
-  std::vector<std::int32_t> next(d);
-  for (Index i = 0; i < cells.num_cells(); ++i) {
-    if (!cells.valid(i)) continue;
-    for (std::size_t axis = 0; axis < d; ++axis) {
-      std::ranges::copy(grid.cell(i), next.begin());
-      ++next[axis];
-      const Index j = grid.find(next);
-      if (j == CellGrid::kNone || !cells.valid(j)) continue;
-      turns.push_back(normal_turn(cells, i, j));
-    }
-  }
-  if (turns.empty()) return 0;
-  const auto at = turns.begin() + static_cast<std::ptrdiff_t>(quantile * static_cast<double>(turns.size()));
-  std::nth_element(turns.begin(), at, turns.end());
-  return *at;
 }
 
 }  // namespace taut::detail

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
 #include "taut/surface/point_cloud.hpp"
 
@@ -13,8 +12,5 @@ namespace taut::detail {
 /// h for a surface fitted to samples: as `cell_size_for_box`, and no more than twice the sample spacing, so that layers
 /// the samples can tell apart are told apart by the cells.
 [[nodiscard]] double cell_size_for_samples(const PointCloud& samples);
-
-/// By how much the normal space turns from one cell to the next, radians: the given part of them stays below it.
-[[nodiscard]] double normal_turn(const SurfaceCells& cells, double quantile);
 
 }  // namespace taut::detail

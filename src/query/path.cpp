@@ -60,7 +60,15 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
 }
 
 /// Why not even the finest cells have led from one end to the other, though they are connected.
-void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier) {
+void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier, bool resolved) {
+  if (!resolved) {
+    result.status = Status::not_converged;
+    result.message = fmt::format(
+        "no path was found: cells of {:.3g} are coarser than the surface bends, and finer ones would be too many for "
+        "the box; give a smaller box around both points, or the size of the cells",
+        result.cell);
+    return;
+  }
   constexpr double kLeastCrease = 0.5;  // radians
   const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
   if (!crease) {
@@ -185,12 +193,19 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (sure || second_try) break;
   }
   if (!best) {
-    explain_no_way(result, barrier);
+    explain_no_way(result, barrier, levels().resolved());
     return result;
   }
   if (!sure && best->status == Status::ok && options.method != CorrectionMethod::grid) {
     best->message = fmt::format(
         "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
+  }
+  if (!levels().resolved() && best->cell >= levels().size(0)) {
+    best->rivals_sought = false;
+    if (best->status == Status::ok && best->message.empty()) {
+      best->message = fmt::format(
+          "a shorter path may exist: cells of {:.3g} are coarser than the surface bends, and miss ways", best->cell);
+    }
   }
   return *std::move(best);
 }

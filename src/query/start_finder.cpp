@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "curve/polyline.hpp"
-#include "query/cell_size.hpp"
 #include "query/find_ways.hpp"
+#include "query/normal_turns.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
@@ -67,8 +67,10 @@ void StartFinder::tabulate(Index num_pairs) {
     const bool finest = coarser <= 1;
     std::shared_ptr<SurfaceCells> cells = levels_.subdivided(std::max(1.0, coarser) * levels_.size(0));
     if (!cells) return;
-    const double turn = normal_turn(*cells, kTurnQuantile);
-    if (turn > kTableTurn && !finest) continue;
+    NormalTurns turns(*cells);
+    const double turn = turns.quantile(kTurnQuantile);
+    if ((turn > kTableTurn || !turns.make_a_sheet()) && !finest) continue;
+    if (!turns.make_a_sheet()) return;
     const auto num_cells = static_cast<double>(cells->num_valid());
     const double num_landmarks =
         std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);

@@ -86,6 +86,38 @@ TEST(Rivals, PairsByTheTableAreTheGlobalMinimaToo) {
   for (std::size_t j = 0; j < again.size(); ++j) EXPECT_EQ(again[j].length, paths[j].length) << j;
 }
 
+// Round a long pipe the ways differ by less than the marched distances know, and lie closer together than cells of the
+// usual size. Unrolled, they are straight lines.
+TEST(Rivals, WaysRoundALongPipeAreToldApart) {
+  const Surface pipe = parse_surface("x^2+y^2=1", {.dim = 3});
+  const auto at = [](double angle, double z) { return Vector(Eigen::Vector3d(std::cos(angle), std::sin(angle), z)); };
+  for (const double length : {20.0, 200.0, 1000.0}) {
+    Points from(3, 12), to(3, 12);
+    for (Index j = 0; j < from.cols(); ++j) {
+      const double turn = pi * (0.75 + 0.04 * static_cast<double>(j));  // to either side of half a turn
+      from.col(j) = at(0.5, 0);
+      to.col(j) = at(0.5 + turn, length);
+    }
+    PathSolver solver(pipe);
+    const std::vector<PathResult> paths = solver.solve_pairs(from, to);
+    for (Index j = 0; j < from.cols(); ++j) {
+      const PathResult& path = paths[static_cast<std::size_t>(j)];
+      ASSERT_EQ(path.status, Status::ok) << length << ": " << path.message;
+      const double turn = pi * (0.75 + 0.04 * static_cast<double>(j));
+      EXPECT_NEAR(path.length, std::hypot(length, std::min(turn, 2 * pi - turn)), 1e-9 * length) << "pair " << j;
+    }
+    EXPECT_FALSE(shortest_path(pipe, at(0.5, 0), at(0.5 + pi, length)).unique) << length;
+  }
+}
+
+// No cells that fit into memory are as small as this pipe is thin: that is no reason to call its ends disconnected.
+TEST(Rivals, APipeTooLongForTheCellsIsNotCalledDisconnected) {
+  const PathResult path =
+      shortest_path(parse_surface("x^2+y^2=1", {.dim = 3}), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 1e7));
+  EXPECT_EQ(path.status, Status::not_converged);
+  EXPECT_NE(path.message.find("coarser"), std::string::npos) << path.message;
+}
+
 // GeographicLib's triaxial geodesics: x^2/2.25 + y^2 + z^2/0.25 = 1 from (1.5 cos w, sin w, 0), w = 20 deg to w = -50
 // deg. The equator itself, 1.3380387, is a geodesic but not the shortest; the shortest one has a mirror image.
 TEST(Rivals, TriaxialEllipsoidPrefersTheSlopeToTheEquator) {

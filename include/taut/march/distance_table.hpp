@@ -48,7 +48,6 @@ class DistanceTable {
   void walk(Index cell, std::size_t landmark, std::vector<Index>& way) const;
   [[nodiscard]] std::vector<Index> way_past(const View& from, const View& to, std::size_t landmark) const;
   [[nodiscard]] bool passes(const std::vector<Index>& way, Index i, double distance) const;
-  [[nodiscard]] bool same_side(Index i, Index j) const;
   [[nodiscard]] const float* row(Index cell) const {
     return table_.data() +
            static_cast<std::size_t>(cell) * landmarks_.size() * static_cast<std::size_t>(cells_.dim() + 1);
