@@ -176,7 +176,8 @@ class NewtonDriver : public NewtonSolver::Backend {
 
   // The turn of the normal an element of degree p may see at this tolerance; measured (docs/newton.md).
   [[nodiscard]] double turn_allowed(int p) const {
-    const double at_1e12 = options_.leave_saddles ? 0.6 : 0.35;  // a saddle wants a start that is resolved
+    double at_1e12 = System::kFactors && p > 4 ? 0.4 : 0.6;
+    if (!options_.leave_saddles) at_1e12 = 0.35;  // a saddle wants a start that is resolved
     return std::min(1.2, at_1e12 * std::pow(options_.tolerance / 1e-12, 1.0 / (2 * p)));
   }
 

@@ -57,7 +57,8 @@ class Descent {
   [[nodiscard]] bool at_source() {
     Index source = -1;
     if (field_.method == MarchMethod::convergent) {
-      reading_ = reader_.read(here());
+      if (!is_read_) reading_ = reader_.read(here());
+      is_read_ = false;
       if (reading_) source = reading_->direct_source;
     } else {
       source = reader_.source_nearby(here());
@@ -86,6 +87,8 @@ class Descent {
     normals_ = normals;
     below = distance;
     append(x_);
+    reading_ = next;
+    is_read_ = true;
     return true;
   }
 
@@ -118,6 +121,7 @@ class Descent {
   Vector x_;
   Vector normals_;
   std::optional<Reading<D>> reading_;
+  bool is_read_ = false;  // reading_ is of x_ already
 };
 
 }  // namespace

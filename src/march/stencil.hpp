@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -24,8 +25,12 @@ class Stencil {
   }
 
   /// The present cells of the 3^d block around integer coordinates `centre`, its middle included, in a fixed order.
-  /// The span lives until the next call.
+  /// The span lives until the next call. The same block again, as walks ask for it, costs nothing.
   [[nodiscard]] std::span<const Index> block(const CellGrid& grid, std::span<const std::int32_t> centre) {
+    if (&grid == grid_ && grid.num_cells() == num_cells_ && std::ranges::equal(centre, centre_)) return present_;
+    grid_ = &grid;
+    num_cells_ = grid.num_cells();
+    centre_.assign(centre.begin(), centre.end());
     present_.clear();
     const std::size_t dim = coordinates_.size();
     for (std::size_t i = 0; i < dim; ++i) coordinates_[i] = base_[i] = centre[i] - 1;
@@ -41,6 +46,10 @@ class Stencil {
   std::vector<std::int32_t> coordinates_;
   std::vector<std::int32_t> base_;
   std::vector<Index> present_;
+  // What present_ is the block of.
+  const CellGrid* grid_ = nullptr;
+  Index num_cells_ = 0;
+  std::vector<std::int32_t> centre_;
 };
 
 }  // namespace taut::detail

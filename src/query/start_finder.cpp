@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "curve/polyline.hpp"
 #include "query/find_ways.hpp"
 #include "query/normal_turns.hpp"
@@ -132,34 +133,49 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   }
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
   const double cells_seconds = watch.restart();
-  MarchOptions march_options{.method = options_.march};
-  if (!options_.all) march_options.target = q;
-  const DistanceField from_p = march(surface_, *cells, p, march_options, context_);
+  DistanceField from_p;
+  std::optional<DistanceField> from_q;
+  if (seeks_rivals() && !cells->is_lazy() && (p - q).norm() > kNoRivals * cells->grid().size()) {
+    from_q.emplace();
+    parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
+      if (first == 0) from_p = march_towards(*cells, p, q);
+      if (last == 2) from_q = march_towards(*cells, q, p);
+    });
+  } else {
+    from_p = march_towards(*cells, p, q);
+  }
   const double march_seconds = watch.restart();
-  Starts starts = continue_to(cells, from_p, q);
+  Starts starts = continue_to(cells, from_p, q, std::move(from_q));
   starts.seconds.cells += cells_seconds;
   starts.seconds.march += march_seconds;
   return starts;
+}
+
+bool StartFinder::seeks_rivals() const {
+  return options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
+}
+
+DistanceField StartFinder::march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const {
+  MarchOptions march_options{.method = options_.march};
+  if (!options_.all) march_options.target = target;
+  return march(surface_, cells, source, march_options, context_);
 }
 
 DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {
   return march(surface_, cells, p, MarchOptions{.method = options_.march}, context_);
 }
 
-Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
-                                const Vector& q) const {
+Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p, const Vector& q,
+                                std::optional<DistanceField> from_q) const {
   const Stopwatch watch;
   Starts starts;
   starts.cell = cells->grid().size();
   const double distance = distance_at(surface_, *cells, from_p, q)(0);
   if (std::isfinite(distance)) {
-    const bool rivals = options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
-    starts.rivals_sought = rivals;
-    if (rivals && (options_.all || distance > kNoRivals * starts.cell)) {
-      MarchOptions march_options{.method = options_.march};
-      if (!options_.all) march_options.target = from_p.sources.col(0);
-      const DistanceField from_q = march(surface_, *cells, q, march_options, context_);
-      starts.paths = start_paths(surface_, *cells, from_p, from_q,
+    starts.rivals_sought = seeks_rivals();
+    if (seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell)) {
+      if (!from_q) from_q = march_towards(*cells, q, from_p.sources.col(0));
+      starts.paths = start_paths(surface_, *cells, from_p, *from_q,
                                  {.excess = options_.all ? std::numeric_limits<double>::infinity() : kExcess,
                                   .max_paths = options_.all ? kMostWaysRound : kMostRivals});
     }

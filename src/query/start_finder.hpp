@@ -49,9 +49,9 @@ class StartFinder {
   [[nodiscard]] Starts find(const Vector& p, const Vector& q, int level) const;
   /// The distances from p over all cells of level 0, for `continue_to`.
   [[nodiscard]] DistanceField march_all(SurfaceCells& cells, const Vector& p) const;
-  /// Ways where the distances from p are there already, at least up to q.
-  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
-                                   const Vector& q) const;
+  /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
+  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p, const Vector& q,
+                                   std::optional<DistanceField> from_q = std::nullopt) const;
   /// The cells of a level, shared unless they are lazy.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;
 
@@ -61,6 +61,9 @@ class StartFinder {
 
  private:
   [[nodiscard]] double measure_error(const DistanceTable& table) const;
+  [[nodiscard]] bool seeks_rivals() const;
+  /// The distances from `source`, as far as `target` needs them.
+  [[nodiscard]] DistanceField march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const;
 
   const Surface& surface_;
   const PathOptions& options_;
