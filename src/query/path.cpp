@@ -16,6 +16,7 @@
 #include "query/cell_levels.hpp"
 #include "query/check_options.hpp"
 #include "query/corrector.hpp"
+#include "query/no_way.hpp"
 #include "query/start_finder.hpp"
 #include "query/stopwatch.hpp"
 
@@ -59,29 +60,9 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
   return shared;
 }
 
-/// Why not even the finest cells have led from one end to the other, though they are connected.
-void explain_no_way(PathResult& result, const std::optional<Barrier>& barrier, bool resolved) {
-  if (!resolved) {
-    result.status = Status::not_converged;
-    result.message = fmt::format(
-        "no path was found: cells of {:.3g} are coarser than the surface bends, and finer ones would be too many for "
-        "the box; give a smaller box around both points, or the size of the cells",
-        result.cell);
-    return;
-  }
-  constexpr double kLeastCrease = 0.5;  // radians
-  const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
-  if (!crease) {
-    result.status = Status::disconnected;
-    result.message = fmt::format("no path was found on cells down to {:.3g}", result.cell);
-    return;
-  }
-  result.status = Status::not_converged;
-  result.message = fmt::format(
-      "the surface is not smooth between the two points: near ({:.4g}) its normal turns by {:.0f} degrees within a "
-      "cell of {:.2g}; geodesics over a crease or through a singular point are not supported",
-      fmt::join(barrier->point, ", "), barrier->turn * 180 / std::numbers::pi, result.cell);
-}
+/// Before cells get finer than so many, ways are sought without them; beyond so many, no longer with them.
+constexpr Index kMostCellsBeforeWalks = 2'000'000;
+constexpr Index kMostCellsForSheets = 6'000'000;
 
 }  // namespace
 
@@ -107,6 +88,7 @@ struct PathSolver::Impl {
   [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
   [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
                                    std::optional<Starts> first = std::nullopt) const;
+  [[nodiscard]] bool walk(PathResult& result, const Vector& p, const Vector& q, Corrector& corrector) const;
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -153,6 +135,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   std::optional<PathResult> best;
   std::optional<Barrier> barrier;
   bool sure = true;
+  bool walked = false;
   double marched = 0;
   for (int level = 0; level < levels().num_levels(); ++level) {
     Starts starts;
@@ -178,6 +161,12 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
         result.message = "the two points lie on different components of the surface";
         return result;
       }
+      const Index finer = starts.cells->num_cells() << (surface.dim() - 1);
+      if (!walked && finer > kMostCellsBeforeWalks) {
+        walked = true;
+        if (walk(result, p, q, corrector)) return result;
+      }
+      if (finer > kMostCellsForSheets) break;
       context.tell(fmt::format("cells of {:.3g} cannot tell the sheets of the surface apart; trying finer ones",
                                levels().size(level)));
       continue;
@@ -193,14 +182,15 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (sure || second_try) break;
   }
   if (!best) {
-    explain_no_way(result, barrier, levels().resolved());
+    if (!walked && levels().exist() && walk(result, p, q, corrector)) return result;
+    detail::explain_no_way(result, surface, barrier, levels().resolved());
     return result;
   }
   if (!sure && best->status == Status::ok && options.method != CorrectionMethod::grid) {
     best->message = fmt::format(
         "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
   }
-  if (!levels().resolved() && best->cell >= levels().size(0)) {
+  if (!levels().resolved()) {
     best->rivals_sought = false;
     if (best->status == Status::ok && best->message.empty()) {
       best->message = fmt::format(
@@ -208,6 +198,24 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     }
   }
   return *std::move(best);
+}
+
+/// For ends that no cells have joined: thin shells, of which a cell holds both sides. False when walks have not led to
+/// a geodesic either.
+bool PathSolver::Impl::walk(PathResult& result, const Vector& p, const Vector& q, Corrector& corrector) const {
+  const Starts starts = finder.walk(p, q);
+  result.seconds.march += starts.seconds.march;
+  if (starts.paths.empty() || options.method == CorrectionMethod::grid) return false;
+  PathResult found = result;
+  (void)corrector.correct(found, starts, true);
+  if (found.status != Status::ok) return false;
+  found.rivals_sought = false;
+  found.message = fmt::format(
+      "a shorter path may exist: cells of {:.3g} cannot tell the sheets of the surface apart, this one was found by "
+      "walks from both ends",
+      result.cell);
+  result = std::move(found);
+  return true;
 }
 
 std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,

@@ -117,20 +117,23 @@ Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {
   return starts;
 }
 
-Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
-  Stopwatch watch;
-  if (!levels_.exist()) {
-    Starts starts;
-    Ways ways = find_ways(surface_, p, q, options_.all, context_);
-    starts.rivals_sought = ways.rivals_sought;
-    for (Points& way : ways.paths) {
-      const double length = polyline_length(way);
-      starts.paths.push_back({length, std::move(way)});
-    }
-    std::ranges::sort(starts.paths, {}, &StartPath::length);
-    starts.seconds.march = watch.seconds();
-    return starts;
+Starts StartFinder::walk(const Vector& p, const Vector& q) const {
+  const Stopwatch watch;
+  Starts starts;
+  Ways ways = find_ways(surface_, p, q, options_.all, context_);
+  starts.rivals_sought = ways.rivals_sought;
+  for (Points& way : ways.paths) {
+    const double length = polyline_length(way);
+    starts.paths.push_back({length, std::move(way)});
   }
+  std::ranges::sort(starts.paths, {}, &StartPath::length);
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
+  if (!levels_.exist()) return walk(p, q);
+  Stopwatch watch;
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
   const double cells_seconds = watch.restart();
   DistanceField from_p;

@@ -45,7 +45,9 @@ class StartFinder {
   [[nodiscard]] const CellLevels& levels() const { return levels_; }
   /// Ways by the table, in microseconds. None where there is no table or it cannot tell.
   [[nodiscard]] Starts find_by_table(const Vector& p, const Vector& q) const;
-  /// Ways by marching on the cells of one level.
+  /// Ways without cells: by walks from both ends.
+  [[nodiscard]] Starts walk(const Vector& p, const Vector& q) const;
+  /// Ways by marching on the cells of one level; by walks in more dimensions than cells reach.
   [[nodiscard]] Starts find(const Vector& p, const Vector& q, int level) const;
   /// The distances from p over all cells of level 0, for `continue_to`.
   [[nodiscard]] DistanceField march_all(SurfaceCells& cells, const Vector& p) const;

@@ -110,12 +110,34 @@ TEST(Rivals, WaysRoundALongPipeAreToldApart) {
   }
 }
 
-// No cells that fit into memory are as small as this pipe is thin: that is no reason to call its ends disconnected.
+// No cells that fit into memory are as small as this pipe is thin: walks find the way, and what they cannot know is
+// said.
 TEST(Rivals, APipeTooLongForTheCellsIsNotCalledDisconnected) {
+  const double length = 1e5;
   const PathResult path =
-      shortest_path(parse_surface("x^2+y^2=1", {.dim = 3}), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(-1, 0, 1e7));
+      shortest_path(parse_surface("x^2+y^2=1", {.dim = 3}), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, length));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, std::hypot(length, pi / 2), 1e-9 * length);
+  EXPECT_FALSE(path.rivals_sought);
+  EXPECT_FALSE(path.message.empty());
+}
+
+TEST(Rivals, EndsOnOneSheetOfAThinShellAreJoinedAndThoseOnTwoAreNot) {
+  const Surface shell = parse_surface("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0002)=0");
+  const PathResult path = shortest_path(shell, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi / 2, 1e-9);
+  const Surface plates = parse_surface("z^2=1e-8", {.dim = 3, .domain = {"x^2+y^2<1"}});
+  EXPECT_NEAR(shortest_path(plates, Eigen::Vector3d(0.5, 0, 1e-4), Eigen::Vector3d(-0.5, 0, 1e-4)).length, 1, 1e-9);
+  EXPECT_EQ(shortest_path(plates, Eigen::Vector3d(0.5, 0, 1e-4), Eigen::Vector3d(-0.5, 0, -1e-4)).status,
+            Status::disconnected);
+}
+
+TEST(Rivals, AWayThroughASingularPointIsRefusedByName) {
+  const PathResult path =
+      shortest_path(parse_surface("y^2=x^2*(x+1)"), Eigen::Vector2d(-1, 0), Eigen::Vector2d(2, std::sqrt(12.0)));
   EXPECT_EQ(path.status, Status::not_converged);
-  EXPECT_NE(path.message.find("coarser"), std::string::npos) << path.message;
+  EXPECT_NE(path.message.find("singular"), std::string::npos) << path.message;
 }
 
 // GeographicLib's triaxial geodesics: x^2/2.25 + y^2 + z^2/0.25 = 1 from (1.5 cos w, sin w, 0), w = 20 deg to w = -50

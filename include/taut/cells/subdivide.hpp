@@ -23,7 +23,7 @@ struct SubdivideOptions {
 /// have the size wanted. With interval bounds no crossed cell is ever lost, and cells wholly outside the domain are
 /// dropped; without them the search starts from cells of 1/32 of the box (1/8 above d = 4), and what is finer may be
 /// missed. The cells stand in Morton order. Threads do not change them. Cost O(2^d N) tests for N cells, as the paper's
-/// Appendix I says; memory 40 bytes a cell (d = 3) and no more than that again while it runs. Throws EmptySurface,
+/// Appendix I says; memory some 22 bytes a cell (d = 3), at most 80 while it runs. Throws EmptySurface,
 /// InvalidArgument (also above d = 12), Cancelled, and OutOfMemory, the latter at once where the coarse cells already
 /// show that the limit will be passed by far.
 [[nodiscard]] CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, const Context& context = {});
