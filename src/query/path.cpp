@@ -17,6 +17,7 @@
 #include "query/check_options.hpp"
 #include "query/corrector.hpp"
 #include "query/no_way.hpp"
+#include "query/shorter_paths.hpp"
 #include "query/start_finder.hpp"
 #include "query/stopwatch.hpp"
 
@@ -63,6 +64,8 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
 /// Before cells get finer than so many, ways are sought without them; beyond so many, no longer with them.
 constexpr Index kMostCellsBeforeWalks = 2'000'000;
 constexpr Index kMostCellsForSheets = 6'000'000;
+/// A part of the box is looked at again where it is smaller by this.
+constexpr double kCloser = 0.7;
 
 }  // namespace
 
@@ -84,11 +87,13 @@ struct PathSolver::Impl {
   std::shared_ptr<std::atomic<bool>> batch = std::make_shared<std::atomic<bool>>(false);
   Context context;  // the user's, fit for several threads
   detail::StartFinder finder;
+  bool close_up = false;  // of a surface that another solver knows as a whole
 
   [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
   [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
                                    std::optional<Starts> first = std::nullopt) const;
   [[nodiscard]] bool walk(PathResult& result, const Vector& p, const Vector& q, Corrector& corrector) const;
+  [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -190,14 +195,31 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     best->message = fmt::format(
         "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
   }
-  if (!levels().resolved()) {
-    best->rivals_sought = false;
-    if (best->status == Status::ok && best->message.empty()) {
-      best->message = fmt::format(
-          "a shorter path may exist: cells of {:.3g} are coarser than the surface bends, and miss ways", best->cell);
-    }
+  return levels().resolved() ? *std::move(best) : look_closer(*std::move(best), corrector);
+}
+
+/// Cells too coarse for the whole box may be fine enough for the part of it that shorter paths can visit: the ellipsoid
+/// about the ends whose points are no farther from both than the path is long.
+PathResult PathSolver::Impl::look_closer(PathResult found, Corrector& corrector) const {
+  found.rivals_sought = false;
+  if (found.status != Status::ok) return found;
+  if (found.message.empty()) {
+    found.message = fmt::format(
+        "a shorter path may exist: cells of {:.3g} are coarser than the surface bends, and miss ways", found.cell);
   }
-  return *std::move(best);
+  const Box& whole = levels().box();
+  Box near = detail::box_of_shorter_paths(found.from, found.to, found.length);
+  near = {near.lower.cwiseMax(whole.lower), near.upper.cwiseMin(whole.upper)};
+  if (close_up || near.extent().maxCoeff() > kCloser * whole.extent().maxCoeff()) return found;
+  Impl closer(surface.with_box(near), options, context);
+  closer.close_up = true;
+  closer.finder.prepare(chord(found.from, found.to));
+  PathResult again = closer.between(found.from, found.to, corrector);
+  if (again.status != Status::ok || again.length > (1 + options.tolerance) * found.length) return found;
+  again.seconds.cells += found.seconds.cells;
+  again.seconds.march += found.seconds.march;
+  again.seconds.correct += found.seconds.correct;
+  return again;
 }
 
 /// For ends that no cells have joined: thin shells, of which a cell holds both sides. False when walks have not led to

@@ -113,7 +113,7 @@ TEST(Rivals, WaysRoundALongPipeAreToldApart) {
 // No cells that fit into memory are as small as this pipe is thin: walks find the way, and what they cannot know is
 // said.
 TEST(Rivals, APipeTooLongForTheCellsIsNotCalledDisconnected) {
-  const double length = 1e5;
+  const double length = 1e4;
   const PathResult path =
       shortest_path(parse_surface("x^2+y^2=1", {.dim = 3}), Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, length));
   ASSERT_EQ(path.status, Status::ok) << path.message;
@@ -122,11 +122,26 @@ TEST(Rivals, APipeTooLongForTheCellsIsNotCalledDisconnected) {
   EXPECT_FALSE(path.message.empty());
 }
 
-TEST(Rivals, EndsOnOneSheetOfAThinShellAreJoinedAndThoseOnTwoAreNot) {
-  const Surface shell = parse_surface("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0002)=0");
-  const PathResult path = shortest_path(shell, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0));
+// The box of an unbounded surface is far larger than a path between two of its points: only where shorter paths could
+// run are the cells as fine as the surface needs.
+TEST(Rivals, ALongPathOnAnUnboundedSurfaceIsTheSameAsInASmallBox) {
+  const Surface gyroid = parse_surface("sin(x)cos(y)+sin(y)cos(z)+sin(z)cos(x)=0");
+  const Vector p = Eigen::Vector3d(0, 0, 0);
+  const Vector q = Eigen::Vector3d(20, 18, 22);
+  const PathResult path = shortest_path(gyroid, p, q);
   ASSERT_EQ(path.status, Status::ok) << path.message;
-  EXPECT_NEAR(path.length, pi / 2, 1e-9);
+  EXPECT_EQ(path.message, "");
+  EXPECT_TRUE(path.rivals_sought);
+  const Box box{Vector::Constant(3, -4), Vector::Constant(3, 26)};
+  const PathResult small = shortest_path(gyroid.with_box(box), p, q, {.cell = 0.4});
+  EXPECT_NEAR(path.length, small.length, 1e-8 * path.length);
+}
+
+TEST(Rivals, EndsOnOneSheetOfAThinShellAreJoinedAndThoseOnTwoAreNot) {
+  const Surface shell = parse_surface("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0002)=0", {.domain = {"z > 0.7"}});
+  const PathResult path = shortest_path(shell, Eigen::Vector3d(0.6, 0, 0.8), Eigen::Vector3d(0, 0.6, 0.8));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, std::acos(0.64), 1e-9);
   const Surface plates = parse_surface("z^2=1e-8", {.dim = 3, .domain = {"x^2+y^2<1"}});
   EXPECT_NEAR(shortest_path(plates, Eigen::Vector3d(0.5, 0, 1e-4), Eigen::Vector3d(-0.5, 0, 1e-4)).length, 1, 1e-9);
   EXPECT_EQ(shortest_path(plates, Eigen::Vector3d(0.5, 0, 1e-4), Eigen::Vector3d(-0.5, 0, -1e-4)).status,
