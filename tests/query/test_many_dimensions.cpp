@@ -143,16 +143,14 @@ TEST(ManyDimensions, PosesOffASingularWayByRoundingAreNotCalledMinima) {
   std::normal_distribution<double> normal(0, 1e-14);
   for (const double tolerance : {1e-9, 1e-12}) {
     PathSolver solver(surface, {.tolerance = tolerance});
-    for (int i = 0; i < 2; ++i) {
-      Points ends(15, 2);
-      ends << pose, -pose;
-      for (double& x : ends.reshaped()) x += normal(random);
-      ASSERT_TRUE(project_to_surface(*evaluator, 15, surface.codim(), ends).all());
-      const PathResult path = solver.solve(ends.col(0), ends.col(1));
-      EXPECT_EQ(path.status, Status::rank_deficient) << i << ", " << tolerance;
-      EXPECT_FALSE(path.locally_shortest) << i << ", " << tolerance;
-      EXPECT_NEAR(path.length, 14.172985754, path.length_error + 1e-8) << i << ", " << tolerance;
-    }
+    Points ends(15, 2);
+    ends << pose, -pose;
+    for (double& x : ends.reshaped()) x += normal(random);
+    ASSERT_TRUE(project_to_surface(*evaluator, 15, surface.codim(), ends).all());
+    const PathResult path = solver.solve(ends.col(0), ends.col(1));
+    EXPECT_EQ(path.status, Status::rank_deficient) << tolerance;
+    EXPECT_FALSE(path.locally_shortest) << tolerance;
+    EXPECT_NEAR(path.length, 14.172985754, path.length_error + 1e-8) << tolerance;
   }
 }
 
