@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/random.hpp"
+#include "query/follow_curve.hpp"
 #include "query/sample_graph.hpp"
 #include "query/surface_walker.hpp"
 #include "query/tree_search.hpp"
@@ -52,6 +53,7 @@ void add_detours(SurfaceWalker& walker, const Vector& p, const Vector& q, std::v
 }  // namespace
 
 Ways find_ways(const Surface& surface, const Vector& p, const Vector& q, bool all, const Context& context) {
+  if (surface.dim() - surface.codim() == 1) return {follow_curve(surface, p, q, context), true};
   const double step = (q - p).norm() / kStepsPerChord;
   SurfaceWalker walker(surface, step);
   Ways result;

@@ -92,7 +92,7 @@ struct PathSolver::Impl {
   [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
   [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
                                    std::optional<Starts> first = std::nullopt) const;
-  [[nodiscard]] bool walk(PathResult& result, const Vector& p, const Vector& q, Corrector& corrector) const;
+  [[nodiscard]] PathResult walk(const PathResult& so_far, const Vector& p, const Vector& q, Corrector& corrector) const;
   [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
@@ -140,7 +140,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   std::optional<PathResult> best;
   std::optional<Barrier> barrier;
   bool sure = true;
-  bool walked = false;
+  std::optional<PathResult> walked;
   double marched = 0;
   for (int level = 0; level < levels().num_levels(); ++level) {
     Starts starts;
@@ -168,8 +168,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
       }
       const Index finer = starts.cells->num_cells() << (surface.dim() - 1);
       if (!walked && finer > kMostCellsBeforeWalks) {
-        walked = true;
-        if (walk(result, p, q, corrector)) return result;
+        walked = walk(result, p, q, corrector);
+        if (walked->status == Status::ok) return *std::move(walked);
       }
       if (finer > kMostCellsForSheets) break;
       context.tell(fmt::format("cells of {:.3g} cannot tell the sheets of the surface apart; trying finer ones",
@@ -187,7 +187,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (sure || second_try) break;
   }
   if (!best) {
-    if (!walked && levels().exist() && walk(result, p, q, corrector)) return result;
+    if (!walked && levels().exist()) walked = walk(result, p, q, corrector);
+    if (walked && walked->points.cols() > 0) return *std::move(walked);
     detail::explain_no_way(result, surface, barrier, levels().resolved());
     return result;
   }
@@ -222,22 +223,26 @@ PathResult PathSolver::Impl::look_closer(PathResult found, Corrector& corrector)
   return again;
 }
 
-/// For ends that no cells have joined: thin shells, of which a cell holds both sides. False when walks have not led to
-/// a geodesic either.
-bool PathSolver::Impl::walk(PathResult& result, const Vector& p, const Vector& q, Corrector& corrector) const {
+/// For ends that no cells have joined: thin shells, of which a cell holds both sides. Without a curve where walks find
+/// no way either.
+PathResult PathSolver::Impl::walk(const PathResult& so_far, const Vector& p, const Vector& q,
+                                  Corrector& corrector) const {
   const Starts starts = finder.walk(p, q);
-  result.seconds.march += starts.seconds.march;
-  if (starts.paths.empty() || options.method == CorrectionMethod::grid) return false;
-  PathResult found = result;
+  PathResult found = so_far;
+  found.seconds.march += starts.seconds.march;
+  if (starts.paths.empty()) return found;
   (void)corrector.correct(found, starts, true);
-  if (found.status != Status::ok) return false;
+  // Walks on thin shells may step from sheet to sheet: where no geodesic comes of it, there was no way.
+  const bool surely_a_way = surface.dim() - surface.codim() == 1;
+  if (found.status != Status::ok && !surely_a_way) return so_far;
   found.rivals_sought = false;
-  found.message = fmt::format(
-      "a shorter path may exist: cells of {:.3g} cannot tell the sheets of the surface apart, this one was found by "
-      "walks from both ends",
-      result.cell);
-  result = std::move(found);
-  return true;
+  if (found.status == Status::ok) {
+    found.message = fmt::format(
+        "a shorter path may exist: cells of {:.3g} cannot tell the sheets of the surface apart, this one was found by "
+        "walks from both ends",
+        so_far.cell);
+  }
+  return found;
 }
 
 std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,

@@ -148,6 +148,16 @@ TEST(Rivals, EndsOnOneSheetOfAThinShellAreJoinedAndThoseOnTwoAreNot) {
             Status::disconnected);
 }
 
+// A plane curve bends too sharply for its cells: the two ways along it are found by following it.
+TEST(Rivals, EndsOnOneCircleOfTwoThatAreCloserThanCells) {
+  const Surface circles = parse_surface("(x^2+y^2-1)*(x^2+y^2-1.0002)=0");
+  const PathResult path = shortest_path(circles, Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi / 2, 1e-9);
+  EXPECT_NE(shortest_path(parse_surface("y=1000*sin(x)"), Eigen::Vector2d(0, 0), Eigen::Vector2d(pi, 0)).status,
+            Status::disconnected);
+}
+
 TEST(Rivals, AWayThroughASingularPointIsRefusedByName) {
   const PathResult path =
       shortest_path(parse_surface("y^2=x^2*(x+1)"), Eigen::Vector2d(-1, 0), Eigen::Vector2d(2, std::sqrt(12.0)));
