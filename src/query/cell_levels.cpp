@@ -84,15 +84,15 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
                                         context_);
 }
 
-/// Makes the coarsest cells finer where the surface bends too much from one to the next for marched distances to tell
-/// ways apart.
+/// Finds out whether the surface bends too much from one of the coarsest cells to the next for marched distances to
+/// tell ways apart, and makes them finer if it does, where that costs little (d = 3).
 void CellLevels::refine_to_curvature() {
   std::shared_ptr<SurfaceCells>& coarsest = complete_.front();
-  for (int i = 0; i < kMostRefinements && surface_.dim() == 3; ++i) {
+  for (int i = 0; i < kMostRefinements; ++i) {
     NormalTurns turns(*coarsest);
     resolved_ = turns.make_a_sheet() && turns.quantile(kTypically) <= kMostTurn;
     const bool enough = resolved_ && (i >= kRefinementsForRims || turns.quantile(kNearlyEverywhere) <= kMostTurn);
-    if (enough || 4 * coarsest->num_cells() > kMostRefinedCells) return;
+    if (enough || surface_.dim() != 3 || 4 * coarsest->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest = subdivided(size_);
   }

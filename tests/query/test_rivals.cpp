@@ -148,6 +148,15 @@ TEST(Rivals, EndsOnOneSheetOfAThinShellAreJoinedAndThoseOnTwoAreNot) {
             Status::disconnected);
 }
 
+// The usual cells of a long body in four dimensions are larger than it is thick.
+TEST(Rivals, OppositePointsAcrossALongBodyInFourDimensionsHaveManyShortestPaths) {
+  const PathResult path =
+      shortest_path(parse_surface("x1^2+x2^2+x3^2+x4^2/100=1"), Vector::Unit(4, 0), -Vector::Unit(4, 0));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi, 1e-8);
+  EXPECT_FALSE(path.unique);
+}
+
 // A plane curve bends too sharply for its cells: the two ways along it are found by following it.
 TEST(Rivals, EndsOnOneCircleOfTwoThatAreCloserThanCells) {
   const Surface circles = parse_surface("(x^2+y^2-1)*(x^2+y^2-1.0002)=0");
