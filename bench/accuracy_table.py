@@ -2,6 +2,7 @@
 """Time against accuracy for one pair of points: Taut, GeographicLib, and meshes of the same surface, in one run.
 
     accuracy_table.py BUILD [--plot FILE.svg] [--pairs N] [--large-pairs N]
+    accuracy_table.py BUILD --program
 
 BUILD: a build folder of the preset `bench`. Prints a Markdown table: per surface and method the time to prepare (cells and
 table; mesh; factorization), the median time a pair, and the median relative error. Meshes are Taut's own, with vertices exactly on
@@ -24,6 +25,9 @@ FORMULAS = {
     "ellipsoid": ("x^2+y^2+4z^2=1", {"5k": 0.07, "50k": 0.0225, "500k": 0.0071}),
     "torus": ("(x^2+y^2+z^2+1-0.16)^2=4*(x^2+y^2)", {"5k": 0.094, "50k": 0.03, "500k": 0.0094}),
     "tanglecube": ("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8=0", {"5k": 0.27, "50k": 0.09, "500k": 0.028}),
+}
+COLD_PAIRS = {  # far apart
+    "ellipsoid": ("1,0,0", "-0.5,0.5,0.35"), "torus": ("1.4,0,0", "-1,0,0.4"), "tanglecube": ("1.6,1.6,1.6", "-1.6,-1.6,-1.6"),
 }
 COLOURS = {"taut path": "#c0392b", "taut correction": "#e59866", "GeographicLib": "#2e86c1",
            "polyhedral": "#27ae60", "heat": "#7d3c98"}
@@ -106,12 +110,31 @@ def plot(rows, file):
     file.write_text("\n".join(out) + "\n")
 
 
+def program_table(build, folder):
+    """The program as a whole: one pair from the command line, and a batch of 4,000 on one core."""
+    print("\n| surface | one pair from the command line, ms of wall time | batch, pairs a second on one core |\n|---|---|---|")
+    for surface, (formula, _) in FORMULAS.items():
+        start, end = COLD_PAIRS[surface]
+        times = []
+        for _ in range(30):
+            begin = time.monotonic()
+            output(build / "taut", "path", formula, f"--from={start}", f"--to={end}", "--json")
+            times.append(time.monotonic() - begin)
+        batch = folder / "batch.csv"
+        lines = (folder / f"{surface}.csv").read_text().splitlines()
+        batch.write_text("".join(",".join(line.split(",")[:6]) + "\n" for line in lines) * 10)
+        begin = time.monotonic()
+        answers = output(build / "taut", "path", formula, "--pairs", batch, "--threads", "1", "--quiet").splitlines()
+        print(f"| {surface} | {1e3 * statistics.median(times):.1f} | {len(answers) / (time.monotonic() - begin):,.0f} |")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--plot", type=pathlib.Path)
     parser.add_argument("--pairs", type=int, default=10, help="pairs for the opponents on meshes")
     parser.add_argument("--large-pairs", type=int, default=1, help="pairs for exact polyhedral distances at 500,000 triangles")
+    parser.add_argument("--program", action="store_true", help="the time of the program as a whole instead")
     arguments = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as name:
@@ -120,6 +143,9 @@ def main():
         for row in table:
             rows.append((row["surface"], row["method"], row["setting"], float(row["prepare_s"]), float(row["us"]),
                          float(row["median_error"])))
+        if arguments.program:
+            program_table(arguments.build, folder)
+            return
         meshes = [Mesh(arguments.build, surface, size, folder / f"{surface}.csv", arguments.pairs, folder)
                   for surface in FORMULAS for size in FORMULAS[surface][1]]
         rows += [mesh.heat() for mesh in meshes]

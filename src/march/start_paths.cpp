@@ -9,6 +9,7 @@
 
 #include "cells/normal_turn.hpp"
 #include "core/disjoint_sets.hpp"
+#include "core/parallel.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
 #include "march/point_normals.hpp"
@@ -93,9 +94,13 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<Ba
 
 /// Down from the crossing to both ends; empty when one descent fails.
 Points two_descents(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
-                    const DistanceField& from_q, const VectorIn& crossing) {
-  const Points first = descend(surface, cells, from_p, crossing);
-  const Points second = descend(surface, cells, from_q, crossing);
+                    const DistanceField& from_q, const VectorIn& crossing, const Context& context) {
+  Points first;
+  Points second;
+  parallel_for(context, 0, 2, 1, [&](Index begin, Index end) {
+    if (begin == 0) first = descend(surface, cells, from_p, crossing);
+    if (end == 2) second = descend(surface, cells, from_q, crossing);
+  });
   if (first.cols() < 2 || second.cols() < 2) return Points(surface.dim(), 0);
   Points path(surface.dim(), first.cols() + second.cols() - 1);
   path << first, second.leftCols(second.cols() - 1).rowwise().reverse();
@@ -107,12 +112,13 @@ template <int D, int K>
 class Ways {
  public:
   Ways(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p, const DistanceField& from_q,
-       const StartPathOptions& options)
+       const StartPathOptions& options, const Context& context)
       : surface_(surface),
         cells_(cells),
         from_p_(from_p),
         from_q_(from_q),
         options_(options),
+        context_(context),
         place_(static_cast<std::size_t>(cells.num_cells()), -1) {}
 
   std::vector<StartPath> find() && {
@@ -155,7 +161,7 @@ class Ways {
       if (paths_[w].length > crossing.length + kNoise * least_) continue;
       if (passes(paths_[w].points, normals_[w], crossing.cell, spread)) return;
     }
-    Points points = two_descents(surface_, cells_, from_p_, from_q_, cells_.point(crossing.cell));
+    Points points = two_descents(surface_, cells_, from_p_, from_q_, cells_.point(crossing.cell), context_);
     if (points.cols() == 0) return;
     normals_.push_back(normals_at(surface_, points));
     paths_.push_back({crossing.length, std::move(points)});
@@ -177,6 +183,7 @@ class Ways {
   const DistanceField& from_p_;
   const DistanceField& from_q_;
   const StartPathOptions& options_;
+  const Context& context_;
   std::vector<std::int32_t> place_;
   std::vector<StartPath> paths_;
   std::vector<Points> normals_;  // of the paths' points, (d k) x n
@@ -187,7 +194,8 @@ class Ways {
 }  // namespace detail
 
 std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
-                                   const DistanceField& from_q, const StartPathOptions& options) {
+                                   const DistanceField& from_q, const StartPathOptions& options,
+                                   const Context& context) {
   if (from_p.method != MarchMethod::convergent || from_q.method != MarchMethod::convergent ||
       from_p.sources.cols() != 1 || from_q.sources.cols() != 1 || surface.dim() != cells.dim() ||
       from_p.distance.size() > cells.num_cells() || from_q.distance.size() > cells.num_cells()) {
@@ -197,7 +205,7 @@ std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& c
     throw InvalidArgument("start_paths: excess must not be negative, and at least one path be asked for");
   }
   return detail::with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
-    return detail::Ways<D, K>(surface, cells, from_p, from_q, options).find();
+    return detail::Ways<D, K>(surface, cells, from_p, from_q, options, context).find();
   });
 }
 

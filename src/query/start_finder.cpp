@@ -180,7 +180,8 @@ Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const Dista
       if (!from_q) from_q = march_towards(*cells, q, from_p.sources.col(0));
       starts.paths = start_paths(surface_, *cells, from_p, *from_q,
                                  {.excess = options_.all ? std::numeric_limits<double>::infinity() : kExcess,
-                                  .max_paths = options_.all ? kMostWaysRound : kMostRivals});
+                                  .max_paths = options_.all ? kMostWaysRound : kMostRivals},
+                                 context_);
     }
     if (starts.paths.empty()) {
       Points descent = descend(surface_, *cells, from_p, q);

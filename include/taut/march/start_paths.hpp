@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "taut/core/context.hpp"
 #include "taut/march/distance_field.hpp"
 
 namespace taut {
@@ -28,9 +29,9 @@ struct StartPathOptions {
 /// `from_p` and `from_q`: convergent fields with one source each on the same cells; they must reach beyond half the
 /// distance, by `excess` at least. Empty when the bisector has no cell: the ends are within a few cells of each other,
 /// or no way leads from one to the other. A way round is found only if both its halves are shortest paths.
-/// Throws InvalidArgument when the fields do not fit.
+/// Throws InvalidArgument when the fields do not fit, and Cancelled.
 [[nodiscard]] std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells,
                                                  const DistanceField& from_p, const DistanceField& from_q,
-                                                 const StartPathOptions& options = {});
+                                                 const StartPathOptions& options = {}, const Context& context = {});
 
 }  // namespace taut
