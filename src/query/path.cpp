@@ -230,7 +230,7 @@ PathResult PathSolver::Impl::walk(const PathResult& so_far, const Vector& p, con
   const Starts starts = finder.walk(p, q);
   PathResult found = so_far;
   found.seconds.march += starts.seconds.march;
-  if (starts.paths.empty()) return found;
+  if (starts.paths.empty() || options.method == CorrectionMethod::grid) return found;
   (void)corrector.correct(found, starts, true);
   // Walks on thin shells may step from sheet to sheet: where no geodesic comes of it, there was no way.
   const bool surely_a_way = surface.dim() - surface.codim() == 1;
