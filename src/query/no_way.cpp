@@ -22,7 +22,8 @@ double gradient_share(const Surface& surface, const Barrier& barrier, const Path
 
 }  // namespace
 
-void explain_no_way(PathResult& result, const Surface& surface, const std::optional<Barrier>& barrier, bool resolved) {
+void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_way) {
+  const std::optional<Barrier>& barrier = no_way.barrier;
   result.status = Status::not_converged;
   const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
   if (barrier && gradient_share(surface, *barrier, result) < kSingular) {
@@ -30,7 +31,12 @@ void explain_no_way(PathResult& result, const Surface& surface, const std::optio
         "the surface is singular between the two points: near ({:.4g}) its gradient falls to nothing; geodesics "
         "through a singular point are not supported",
         fmt::join(barrier->point, ", "));
-  } else if (!resolved) {
+  } else if (!no_way.walked) {
+    result.message = fmt::format(
+        "no path was found: cells down to {:.3g} cannot tell the sheets of the surface apart, or the points lie on "
+        "different components",
+        result.cell);
+  } else if (!no_way.resolved) {
     result.message = fmt::format(
         "no path was found, neither on cells of {:.3g}, coarser than the surface bends, nor by walks from both ends; "
         "give a smaller box around both points, or smaller cells",

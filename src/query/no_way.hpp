@@ -7,9 +7,15 @@
 
 namespace taut::detail {
 
-/// Says in `status` and `message` why no way was found from one end to the other though cells connect them: neither on
-/// cells down to result.cell, nor by walks. `barrier`: where the last march stopped; `resolved`: do the cells follow
-/// the surface.
-void explain_no_way(PathResult& result, const Surface& surface, const std::optional<Barrier>& barrier, bool resolved);
+/// What was tried before a way was given up.
+struct NoWay {
+  std::optional<Barrier> barrier;  ///< where the last march stopped
+  bool resolved = true;            ///< do the cells follow the surface
+  bool walked = true;              ///< were walks tried, too
+};
+
+/// Says in `status` and `message` why no way was found from one end to the other, though cells down to result.cell
+/// connect them.
+void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_way);
 
 }  // namespace taut::detail

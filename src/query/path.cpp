@@ -189,7 +189,8 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   if (!best) {
     if (!walked && levels().exist()) walked = walk(result, p, q, corrector);
     if (walked && walked->points.cols() > 0) return *std::move(walked);
-    detail::explain_no_way(result, surface, barrier, levels().resolved());
+    const bool walks = options.method != CorrectionMethod::grid;
+    detail::explain_no_way(result, surface, {barrier, levels().resolved(), walks});
     return result;
   }
   if (!sure && best->status == Status::ok && options.method != CorrectionMethod::grid) {
