@@ -27,6 +27,12 @@ constexpr double kEndSpacings = 1;
 /// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
 constexpr double kSameWaySpacings = 0.8;
 constexpr double kSameWay = 0.15;
+/// Closer than this part of that they surely do. Between, the walk past the landmark tells: where it is the same way,
+/// it strays from the start no farther than the landmark does, by this factor and this many cells.
+constexpr double kSurelySame = 0.5;
+constexpr double kSameStraying = 1.25;
+constexpr double kWalkNoise = 0.5;
+constexpr Index kMostUnsure = 4;  // so many landmarks of a pair are worth the walk
 
 /// Landmarks that share the memory of a march, and a cache line of the table.
 constexpr Index kLandmarksAtATime = 16;
@@ -183,7 +189,7 @@ DistanceTable::View DistanceTable::look(const VectorIn& x) const {
 }
 
 /// Steepest descent from a cell to a landmark, from cell to cell.
-void DistanceTable::walk(Index cell, std::size_t landmark, std::vector<Index>& way) const {
+void DistanceTable::walk(Index cell, std::size_t landmark, Way& way) const {
   way.push_back(cell);
   for (;;) {
     const auto links = std::span(links_).subspan(
@@ -208,9 +214,9 @@ void DistanceTable::walk(Index cell, std::size_t landmark, std::vector<Index>& w
 }
 
 /// The cells of the way from one point past a landmark to the other; empty when there is none.
-std::vector<Index> DistanceTable::way_past(const View& from, const View& to, std::size_t landmark) const {
-  std::vector<Index> there;
-  std::vector<Index> back;
+DistanceTable::Way DistanceTable::way_past(const View& from, const View& to, std::size_t landmark) const {
+  Way there;
+  Way back;
   walk(from.cell, landmark, there);
   walk(to.cell, landmark, back);
   if (there.back() != landmarks_[landmark] || back.back() != landmarks_[landmark]) return {};
@@ -218,12 +224,23 @@ std::vector<Index> DistanceTable::way_past(const View& from, const View& to, std
   return there;
 }
 
-/// True when the way runs past cell i, on the same side of the surface, within a distance.
-bool DistanceTable::passes(const std::vector<Index>& way, Index i, double distance) const {
-  return std::any_of(way.begin(), way.end(), [&](Index j) {
-    return (cells_.point(i) - cells_.point(j)).squaredNorm() < distance * distance &&
-           detail::same_side(cells_.normals(i), cells_.normals(j));
-  });
+/// Distance from cell i to the nearest of the ways that runs past it on the same side of the surface.
+double DistanceTable::distance_to(const std::vector<Way>& ways, Index i) const {
+  double nearest2 = std::numeric_limits<double>::infinity();
+  for (const Way& way : ways) {
+    for (const Index j : way) {
+      const double distance2 = (cells_.point(i) - cells_.point(j)).squaredNorm();
+      if (distance2 < nearest2 && detail::same_side(cells_.normals(i), cells_.normals(j))) nearest2 = distance2;
+    }
+  }
+  return std::sqrt(nearest2);
+}
+
+/// How far a way strays from those known.
+double DistanceTable::straying(const Way& way, const std::vector<Way>& known) const {
+  double most = 0;
+  for (const Index i : way) most = std::max(most, distance_to(known, i));
+  return most;
 }
 
 std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const VectorIn& q,
@@ -252,15 +269,19 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
   std::sort(passing.begin(), passing.end(), [](const Passing& a, const Passing& b) {
     return a.length < b.length || (a.length == b.length && a.landmark < b.landmark);
   });
-  std::vector<std::vector<Index>> ways;
+  std::vector<Way> ways;
+  Index unsure = 0;
   for (const Passing& candidate : passing) {
     if (static_cast<Index>(paths.size()) >= options.max_paths) break;
     const double lever = std::min(from.distance[candidate.landmark], to.distance[candidate.landmark]);
     const double same = std::max(kSameWaySpacings * spacing_, kSameWay * lever);
     const Index landmark = landmarks_[candidate.landmark];
-    if (std::ranges::any_of(ways, [&](const auto& way) { return passes(way, landmark, same); })) continue;
-    std::vector<Index> way = way_past(from, to, candidate.landmark);
+    const double off = distance_to(ways, landmark);
+    if (off < kSurelySame * same) continue;
+    if (off < same && ++unsure > kMostUnsure) continue;
+    Way way = way_past(from, to, candidate.landmark);
     if (way.empty()) continue;
+    if (off < same && straying(way, ways) < kSameStraying * off + kWalkNoise * cells_.grid().size()) continue;
     // The cells of the ends themselves may lie behind them.
     Points points(cells_.dim(), std::max<Index>(2, static_cast<Index>(way.size())));
     for (Index i = 1; i + 1 < points.cols(); ++i) points.col(i) = cells_.point(way[static_cast<std::size_t>(i)]);

@@ -32,10 +32,10 @@ constexpr double kEndCells = 4;
 /// Accuracy of s: hollows of s less deep are noise.
 constexpr double kNoise = 2e-3;
 /// Crossings closer to each other than this, or than a few cells, are one way.
-constexpr double kSpread = 0.2;
-constexpr double kSpreadCells = 1.5;
+constexpr double kSpread = 0.1;
+constexpr double kSpreadCells = 0.8;
 /// Where s rises by no more than this, further crossings are tried. On a plane, s rises by more within kSpread.
-constexpr double kFlat = 0.02;
+constexpr double kFlat = 0.008;
 
 /// A cell of a slice.
 struct BandCell {

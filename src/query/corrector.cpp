@@ -12,6 +12,7 @@
 #include "curve/polyline.hpp"
 #include "query/candidates.hpp"
 #include "query/shortening.hpp"
+#include "query/splices.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/flow.hpp"
@@ -28,6 +29,8 @@ constexpr double kMarchErrorFactor = 3;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
 constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
+/// Splices of those are tried that seem longer than the shortest by no more than this part.
+constexpr double kSpliced = 0.01;
 /// A start from which Newton's method fails is shortened first, in so many segments, the points no farther from the
 /// surface than this part of its length.
 constexpr double kGentleSegments = 96;
@@ -158,19 +161,21 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
   std::vector<StartPath> failed;
   Hope hope;
   double bound = std::numeric_limits<double>::infinity();  // the shortest is no longer than this
-  for (const StartPath& start : starts) {
-    if (hope.is_lost(start)) break;
+  const auto correct_roughly = [&](const StartPath& start) {
     const NewtonResult geodesic = rough_->solve(start.points, context_);
-    if (!is_geodesic(geodesic)) {
-      failed.push_back(start);
-      continue;
-    }
+    if (!is_geodesic(geodesic)) return false;
     hope.found(start, geodesic.length);
     PathCandidate candidate = candidate_of(geodesic);
     candidate.length_error = std::max(candidate.length_error, kLeastRoughError * candidate.length);
     bound = std::min(bound, candidate.length + candidate.length_error);
     add_candidate(rough, std::move(candidate));
+    return true;
+  };
+  for (const StartPath& start : starts) {
+    if (hope.is_lost(start)) break;
+    if (!correct_roughly(start)) failed.push_back(start);
   }
+  for (const StartPath& start : splices(surface_, rough, (1 + kSpliced) * bound)) (void)correct_roughly(start);
   std::vector<StartPath> result;
   for (PathCandidate& candidate : rough) {
     if (candidate.length - candidate.length_error > bound) continue;

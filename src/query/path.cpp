@@ -130,10 +130,14 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     result.seconds.cells += starts.seconds.cells;
     result.seconds.march += starts.seconds.march;
   };
+  std::optional<PathResult> by_table;
   if (!first) {
     const Starts starts = finder.find_by_table(p, q);
     take(starts);
-    if (!starts.paths.empty() && corrector.correct(result, starts, false)) return result;
+    if (!starts.paths.empty()) {
+      if (corrector.correct(result, starts, false)) return result;
+      if (result.status == Status::ok) by_table = result;
+    }
   }
   // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
@@ -192,6 +196,10 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     const bool walks = options.method != CorrectionMethod::grid;
     detail::explain_no_way(result, surface, {barrier, levels().resolved(), walks});
     return result;
+  }
+  if (by_table && detail::is_better(*by_table, *best)) {
+    by_table->seconds = best->seconds;
+    best = std::move(by_table);
   }
   if (!sure && best->status == Status::ok && options.method != CorrectionMethod::grid) {
     best->message = fmt::format(

@@ -8,6 +8,7 @@
 #include "core/parallel.hpp"
 #include "curve/polyline.hpp"
 #include "query/find_ways.hpp"
+#include "query/march_check.hpp"
 #include "query/normal_turns.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/cells/components.hpp"
@@ -28,13 +29,17 @@ constexpr double kRefinement = 1.2;  // the next finer size
 constexpr double kFewestCells = 400;
 constexpr double kFewestLandmarks = 320;
 constexpr double kLandmarksPerTurn2 = 0.1;
-// How wrong it is, is measured on a few ways. Where it is too wrong, finer cells are taken.
+// How wrong it is, is measured against finer cells, and on a few ways. Where it is too wrong, finer cells are taken.
+constexpr double kCheckedPart = 0.99;
+constexpr double kMostOff = 0.03;
 constexpr Index kCalibrationWays = 48;
 constexpr double kCalibrationTolerance = 1e-3;
 constexpr double kSafety = 2;
 constexpr double kLeastTableError = 0.03;
 constexpr double kMostWrong = 0.03;
-constexpr double kLeastTableDoubt = 0.01;
+constexpr double kDoubtSafety = 2;
+constexpr double kLeastTableDoubt = 0.004;
+constexpr double kMostTableDoubt = 0.03;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
 
@@ -63,6 +68,7 @@ void StartFinder::tabulate(Index num_pairs) {
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
   const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
+  std::optional<MarchCheck> check;
   // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
   for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); !table_; coarser /= kRefinement) {
     const bool finest = coarser <= 1;
@@ -72,24 +78,29 @@ void StartFinder::tabulate(Index num_pairs) {
     const double turn = turns.quantile(kTurnQuantile);
     if ((turn > kTableTurn || !turns.make_a_sheet()) && !finest) continue;
     if (!turns.make_a_sheet()) return;
+    if (!finest) {
+      if (!check) check.emplace(surface_, *fine, context_);
+      if (check->quantile(*cells, kCheckedPart) > kMostOff) continue;
+    }
     const auto num_cells = static_cast<double>(cells->num_valid());
     const double num_landmarks =
         std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
     if (num_landmarks * num_cells > most_work) return;
     DistanceTable table(surface_, std::move(*cells), static_cast<Index>(num_landmarks), context_);
-    const double wrong = measure_error(table);
+    const TableError error = measure_error(table);
+    const double wrong = std::max(error.too_long, error.too_short);
     if (wrong > kMostWrong && !finest) continue;
     table_ = std::move(table);
     table_error_ = std::clamp(kSafety * wrong, kLeastTableError, kExcess);
-    table_doubt_ = std::clamp(kSafety * wrong, kLeastTableDoubt, kMostWrong);
+    table_doubt_ = std::clamp(kDoubtSafety * error.too_short, kLeastTableDoubt, kMostTableDoubt);
   }
 }
 
-/// How wrong a table is: the worst of some ways between landmarks far apart, relative to their lengths.
-double StartFinder::measure_error(const DistanceTable& table) const {
+/// How wrong a table is: the worst of some ways between landmarks far apart.
+StartFinder::TableError StartFinder::measure_error(const DistanceTable& table) const {
   NewtonSolver newton(surface_, {.tolerance = kCalibrationTolerance});
   const Index n = table.num_landmarks();
-  double worst = 0;
+  TableError worst;
   for (Index way = 0; way < kCalibrationWays; ++way) {
     const Index from = way * n / kCalibrationWays;
     for (Index other = 0; other < kCalibrationWays; ++other) {  // until one lies on the same component, and far enough
@@ -99,7 +110,9 @@ double StartFinder::measure_error(const DistanceTable& table) const {
       if (starts.empty()) continue;
       const NewtonResult geodesic = newton.solve(starts.front().points, context_);
       if (geodesic.status != Status::ok) continue;
-      worst = std::max(worst, std::abs(starts.front().length / geodesic.length - 1));
+      const double error = starts.front().length / geodesic.length - 1;
+      worst.too_long = std::max(worst.too_long, error);
+      worst.too_short = std::max(worst.too_short, -error);
       break;
     }
   }

@@ -62,7 +62,12 @@ class StartFinder {
   [[nodiscard]] static bool apart(SurfaceCells& cells, const Vector& p, const Vector& q);
 
  private:
-  [[nodiscard]] double measure_error(const DistanceTable& table) const;
+  /// Of lengths by the table, relative.
+  struct TableError {
+    double too_long = 0;
+    double too_short = 0;
+  };
+  [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
   /// The distances from `source`, as far as `target` needs them.
   [[nodiscard]] DistanceField march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const;

@@ -1,6 +1,7 @@
 // Several geodesics join two points: which is the shortest, and is it the only one?
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <memory>
@@ -88,6 +89,36 @@ TEST(Rivals, PairsByTheTableAreTheGlobalMinimaToo) {
 
 // Round a long pipe the ways differ by less than the marched distances know, and lie closer together than cells of the
 // usual size. Unrolled, they are straight lines.
+// Pairs whose rivals lie closer to each other than a coarse table tells, or part near an end. Lengths by cells a
+// quarter as large; the next geodesic is longer by 0.3 to 20 %.
+TEST(Rivals, ATableTellsNearWaysApart) {
+  const auto expect = [](const char* formula, const std::vector<std::array<double, 7>>& pairs) {
+    const auto n = static_cast<Index>(pairs.size());
+    Points both(3, 2 * n);
+    const Surface surface = parse_surface(formula);
+    for (Index j = 0; j < n; ++j) {
+      const auto& pair = pairs[static_cast<std::size_t>(j)];
+      both.col(j) << pair[0], pair[1], pair[2];
+      both.col(n + j) << pair[3], pair[4], pair[5];
+    }
+    PathSolver solver(surface);
+    solver.expect(both, 100'000);  // so that a table pays
+    const std::vector<PathResult> paths = solver.solve_pairs(both.leftCols(n), both.rightCols(n));
+    for (std::size_t j = 0; j < pairs.size(); ++j) {
+      ASSERT_EQ(paths[j].status, Status::ok) << formula << " pair " << j << ": " << paths[j].message;
+      EXPECT_NEAR(paths[j].length, pairs[j][6], 2e-6) << formula << " pair " << j;
+    }
+  };
+  expect("x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8",
+         {{1.571957657, 1.828188816, 0.045317427, -1.204665832, -1.645637970, -0.300468443, 6.169834}});
+  expect(
+      "exp(-2*((x-1)^2+y^2+z^2))+exp(-3*((x+0.7)^2+(y-0.8)^2+z^2))+exp(-2.5*((x+0.6)^2+(y+0.9)^2+(z-0.3)^2))"
+      "+exp(-4*(x^2+y^2+(z+0.9)^2))-0.25",
+      {{-0.466828180, -0.370643218, 0.813869739, -0.312012464, 0.037728198, -0.085329915, 1.038264},
+       {-0.466426682, -0.047643771, 0.250942100, 0.065697525, -0.004365291, 0.117473613, 0.696049},
+       {-0.460773490, 1.040091245, -0.594594955, -0.396398883, -0.110076387, -0.051657719, 1.610189}});
+}
+
 TEST(Rivals, WaysRoundALongPipeAreToldApart) {
   const Surface pipe = parse_surface("x^2+y^2=1", {.dim = 3});
   const auto at = [](double angle, double z) { return Vector(Eigen::Vector3d(std::cos(angle), std::sin(angle), z)); };

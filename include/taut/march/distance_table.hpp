@@ -38,16 +38,18 @@ class DistanceTable {
                                                    const StartPathOptions& options = {}) const;
 
  private:
-  struct View;  // the landmarks as seen from a point
+  struct View;                     // the landmarks as seen from a point
+  using Way = std::vector<Index>;  // cells, from one end to the other
 
   void choose_landmarks(Index count);
   void link_cells();
   void fill(const Surface& surface, const Context& context);
   [[nodiscard]] Index nearest_cell(const VectorIn& x) const;
   [[nodiscard]] View look(const VectorIn& x) const;
-  void walk(Index cell, std::size_t landmark, std::vector<Index>& way) const;
-  [[nodiscard]] std::vector<Index> way_past(const View& from, const View& to, std::size_t landmark) const;
-  [[nodiscard]] bool passes(const std::vector<Index>& way, Index i, double distance) const;
+  void walk(Index cell, std::size_t landmark, Way& way) const;
+  [[nodiscard]] Way way_past(const View& from, const View& to, std::size_t landmark) const;
+  [[nodiscard]] double distance_to(const std::vector<Way>& ways, Index i) const;
+  [[nodiscard]] double straying(const Way& way, const std::vector<Way>& known) const;
   [[nodiscard]] const float* row(Index cell) const {
     return table_.data() +
            static_cast<std::size_t>(cell) * landmarks_.size() * static_cast<std::size_t>(cells_.dim() + 1);
