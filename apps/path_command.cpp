@@ -265,8 +265,9 @@ Run add_path_command(CLI::App& app) {
   command.add_option("--via", arguments->via, "a point to pass on the way (repeatable, in order), likewise")
       ->allow_extra_args(false);
   command.add_option("--to-file", arguments->to_file, "ends, one a line: every path shares the start's marched field");
-  command.add_option("--pairs", arguments->pairs,
-                     "pairs p1,...,pd,q1,...,qd, one a line; writes length,error,converged,locally_shortest,status");
+  command.add_option(
+      "--pairs", arguments->pairs,
+      "pairs p1,...,pd,q1,...,qd, one a line, - = stdin; writes length,error,converged,locally_shortest,status");
   command.add_option("--start", arguments->start,
                      "a polyline, one point a line: the geodesic it is pulled taut to, in its homotopy class");
   command.add_option("--closed", arguments->closed,

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "batch_output.hpp"
 #include "number_rows.hpp"
+#include "pairs_file.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/csv_rows.hpp"
@@ -31,12 +31,12 @@ struct Survey {
   Points corners;  // d x 2
 };
 
-Survey survey(const std::string& file, Index d) {
+Survey survey(const PairsFile& file, Index d) {
   Survey found;
   found.corners.resize(d, 2);
   found.corners.col(0).setConstant(std::numeric_limits<double>::infinity());
   found.corners.col(1).setConstant(-std::numeric_limits<double>::infinity());
-  CsvRows rows(file);
+  CsvRows rows = file.rows();
   for (CsvRow row; rows.next(row); ++found.count) {
     if (!row.problem.empty() || static_cast<Index>(row.values.size()) != 2 * d) continue;
     const Eigen::Map<const Points> ends(row.values.data(), d, 2);
@@ -47,14 +47,11 @@ Survey survey(const std::string& file, Index d) {
 }
 
 /// One line that stands for the request: a file of results made under another one is not continued.
-std::string request_line(const PairsRequest& request) {
-  std::error_code ignored;
-  const auto size = std::filesystem::file_size(request.file, ignored);
-  const auto time = std::filesystem::last_write_time(request.file, ignored).time_since_epoch().count();
+std::string request_line(const PairsRequest& request, const PairsFile& file) {
   const PathOptions& options = request.options;
   std::string line =
-      fmt::format("taut path {} --pairs {} ({} bytes, {}) {} {} {} {} {} {} {} {}", request.surface, request.file, size,
-                  time, to_string(options.method), static_cast<int>(options.march), static_cast<int>(options.grid),
+      fmt::format("taut path {} --pairs {} ({}) {} {} {} {} {} {} {} {}", request.surface, file.name(), file.version(),
+                  to_string(options.method), static_cast<int>(options.march), static_cast<int>(options.grid),
                   options.cell, options.tolerance, options.spacing, options.beta, options.all);
   std::ranges::replace(line, '\n', ' ');
   return line;
@@ -64,12 +61,13 @@ std::string request_line(const PairsRequest& request) {
 
 ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const Context& context) {
   const Index d = surface.dim();
-  const Survey found = survey(request.file, d);
-  const std::unique_ptr<BatchOutput> output = request.out
-                                                  ? std::make_unique<BatchOutput>(*request.out, request_line(request))
-                                                  : std::make_unique<BatchOutput>();
+  const PairsFile file(request.file, context);
+  const Survey found = survey(file, d);
+  const std::unique_ptr<BatchOutput> output =
+      request.out ? std::make_unique<BatchOutput>(*request.out, request_line(request, file))
+                  : std::make_unique<BatchOutput>();
   bool all_ok = !output->some_failed();
-  CsvRows rows(request.file);
+  CsvRows rows = file.rows();
   Index done = 0;
   const auto num_earlier = static_cast<Index>(output->num_done());
   for (CsvRow row; done < num_earlier && rows.next(row);) ++done;
@@ -100,7 +98,7 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
       if (result.status == Status::ok) continue;
       all_ok = false;
       const std::string& problem = chunk.problems[k].empty() ? result.message : chunk.problems[k];
-      print_error(fmt::format("{} line {}: {}", request.file, chunk.lines[k], problem));
+      print_error(fmt::format("{} line {}: {}", file.name(), chunk.lines[k], problem));
     }
     output->write(lines);
     done += static_cast<Index>(results.size());

@@ -85,9 +85,9 @@ CsvRows::CsvRows(std::istream& in, std::string name) : state_(std::make_unique<S
   if (state_->buffer.starts_with("\xEF\xBB\xBF")) state_->buffer.erase(0, 3);
 }
 
-CsvRows::CsvRows(const std::filesystem::path& path) : state_(std::make_unique<State>()) {
+CsvRows::CsvRows(const std::filesystem::path& path, std::string name) : state_(std::make_unique<State>()) {
   State& state = *state_;
-  state.name = path.string();
+  state.name = name.empty() ? path.string() : std::move(name);
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored))
     throw IoError(state.name, "is a folder, not a file; name a file inside it");

@@ -23,7 +23,8 @@ struct CsvRow {
 class CsvRows {
  public:
   /// Throws IoError when the file cannot be opened, is empty or is no text. "-" is not special: pass `std::cin` for it.
-  explicit CsvRows(const std::filesystem::path& path);
+  /// Messages call it `name`, or by its path.
+  explicit CsvRows(const std::filesystem::path& path, std::string name = {});
   /// Reads from `in`, which must outlive this; `name` stands for it in messages.
   CsvRows(std::istream& in, std::string name);
   CsvRows(CsvRows&&) noexcept;
