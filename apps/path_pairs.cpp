@@ -20,7 +20,7 @@ namespace taut::app {
 namespace {
 
 /// Pairs in one go: enough for all cores, and no more than half a second's work to lose.
-constexpr Index kFirstChunk = 256;
+constexpr Index kFirstChunk = 32;
 constexpr Index kLargestChunk = 8192;
 constexpr double kChunkSeconds = 0.5;
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/parallel.hpp"
-#include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 
 namespace taut::detail {
@@ -44,6 +43,8 @@ double MarchCheck::quantile(SurfaceCells& coarser, double part) const {
   std::vector<double> errors;
   for (const DistanceField& fine : fields_) {
     const Vector truth = distance_at(surface_, finer_, fine, points);
+    const Index cell = coarser.cell_at(fine.sources.col(0));
+    if (cell == CellGrid::kNone || !coarser.valid(cell)) return std::numeric_limits<double>::infinity();
     const DistanceField coarse = march(surface_, coarser, fine.sources, {}, context_);
     for (std::size_t j = 0; j < samples.size(); ++j) {
       const double there = truth(static_cast<Index>(j));
