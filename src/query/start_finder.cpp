@@ -37,7 +37,7 @@ constexpr double kCalibrationTolerance = 1e-3;
 constexpr double kSafety = 2;
 constexpr double kLeastTableError = 0.03;
 constexpr double kMostWrong = 0.03;
-constexpr double kDoubtSafety = 2;
+constexpr double kDoubtSafety = 3;
 constexpr double kLeastTableDoubt = 0.004;
 constexpr double kMostTableDoubt = 0.03;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
