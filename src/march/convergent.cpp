@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "march/dimensions.hpp"
 #include "march/field_reader.hpp"
 #include "march/growing_field.hpp"
+#include "march/march_over.hpp"
 #include "march/methods.hpp"
 #include "march/neighbour_index.hpp"
 #include "march/start.hpp"
@@ -29,8 +31,9 @@ class ConvergentMarch {
         target_(task, field),
         solver_(d_, k_),
         frame_(d_, k_),
-        neighbours_(cells_),
+        neighbours_(static_cast<const NeighbourIndex<D>*>(task.neighbours)),
         flags_(static_cast<std::size_t>(cells_.num_cells()), 0) {
+    if (neighbours_ == nullptr) neighbours_ = &own_neighbours_.emplace(cells_);
     for (Index s = 0; s < field.sources.cols(); ++s) {
       for (const Index i : cells_around_source(cells_, field.sources.col(s))) offer_direct(i, s);
     }
@@ -42,7 +45,7 @@ class ConvergentMarch {
       const Index i = field_.pop();
       if (cells_.num_cells() > static_cast<Index>(flags_.size())) {
         flags_.resize(static_cast<std::size_t>(cells_.num_cells()), 0);
-        neighbours_.update();
+        own_neighbours_->update();
       }
       if (visit(i)) target_.settled(cells_.grid().cell(i));
     }
@@ -71,7 +74,8 @@ class ConvergentMarch {
     const bool direct = is_direct(i);
     solver_.begin(point(i));
     waiting_.clear();
-    for (const Index j : neighbours_.around(i)) {
+    neighbours_->around(i, around_);
+    for (const Index j : around_) {
       if (!field_.settled(j)) {
         if (j != i) waiting_.push_back(j);
       } else if (!direct) {
@@ -144,12 +148,20 @@ class ConvergentMarch {
   TargetWatch<D, K> target_;
   ArrivalSolver<D, K> solver_;
   TangentFrame<D, K> frame_;
-  NeighbourIndex<D> neighbours_;
+  std::optional<NeighbourIndex<D>> own_neighbours_;  // of cells that may grow, or whose index nobody has
+  const NeighbourIndex<D>* neighbours_;
+  std::vector<Index> around_;
   std::vector<Index> waiting_;
   std::vector<std::uint8_t> flags_;
 };
 
 }  // namespace
+
+std::shared_ptr<const AnyNeighbourIndex> index_neighbours(const SurfaceCells& cells) {
+  return with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() -> std::shared_ptr<const AnyNeighbourIndex> {
+    return std::make_shared<const NeighbourIndex<D>>(cells);
+  });
+}
 
 void march_convergent(const MarchTask& task, DistanceField& field) {
   with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),

@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 
+#include "march/march_over.hpp"
 #include "march/methods.hpp"
 #include "march/point_normals.hpp"
 #include "march/tangent_frame.hpp"
@@ -30,8 +31,8 @@ Points checked_normals(const Surface& surface, const PointsIn& x, const std::str
 
 }  // namespace
 
-DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources, const MarchOptions& options,
-                    const Context& context) {
+DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
+                                 const PointsIn& sources, const MarchOptions& options, const Context& context) {
   if (surface.dim() != cells.grid().dim()) throw InvalidArgument("the cells belong to another surface");
   if (surface.dim() > detail::kMaxMarchDim) {
     throw InvalidArgument("dimension " + std::to_string(surface.dim()) + ": cells are marched up to dimension " +
@@ -44,7 +45,7 @@ DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn&
   field.sources = sources;
   field.source_normals = checked_normals(surface, sources, "source");
   field.target_distance = std::numeric_limits<double>::quiet_NaN();
-  detail::MarchTask task{cells, options, context, {}};
+  detail::MarchTask task{cells, options, context, {}, neighbours};
   if (options.target) task.target_normals = checked_normals(surface, *options.target, "target").col(0);
   context.check_cancelled();
   switch (options.method) {
@@ -53,6 +54,11 @@ DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn&
     case MarchMethod::dijkstra: detail::march_dijkstra(task, field); break;
   }
   return field;
+}
+
+DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources, const MarchOptions& options,
+                    const Context& context) {
+  return detail::march_over(surface, cells, nullptr, sources, options, context);
 }
 
 }  // namespace taut

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "march/tangent_frame.hpp"
@@ -13,11 +12,19 @@
 
 namespace taut::detail {
 
+/// A neighbour index of some dimension.
+struct AnyNeighbourIndex {
+  AnyNeighbourIndex() = default;
+  AnyNeighbourIndex(const AnyNeighbourIndex&) = delete;
+  AnyNeighbourIndex& operator=(const AnyNeighbourIndex&) = delete;
+  virtual ~AnyNeighbourIndex() = default;
+};
+
 /// Finds the valid neighbours of cells faster than the grid's own hash: cells are filed in blocks of 2^b cells a side,
 /// and the 3^d cells around one lie in a few blocks, so there are few look-ups: 2 to 4 on average for d = 3 instead
 /// of 26. About 13 bytes a cell for d = 3.
 template <int D>
-class NeighbourIndex {
+class NeighbourIndex final : public AnyNeighbourIndex {
  public:
   explicit NeighbourIndex(const SurfaceCells& cells) : cells_(cells), d_(cells.grid().dim()) {
     slots_.assign(kMinSlots, kNoBlock);
@@ -54,17 +61,16 @@ class NeighbourIndex {
     }
   }
 
-  /// The valid cells around cell i in a fixed order, cell i among them. Lives until the next call.
-  [[nodiscard]] std::span<const Index> around(Index i) {
+  /// The valid cells around cell i in a fixed order, cell i among them: in `found`.
+  void around(Index i, std::vector<Index>& found) const {
     const std::int32_t* cell = cells_.grid().cell(i).data();
     Search search;
     for (Index axis = 0; axis < dim(); ++axis) {
       search.block[axis] = (cell[axis] - 1) >> side_bits(axis);
       search.rows[axis] = &rows_[axis][cell[axis] & (side(axis) - 1)];
     }
-    found_.clear();
-    collect<kMaxDim - 1>(search, ~std::uint64_t{0}, hash_of(search.block));
-    return found_;
+    found.clear();
+    collect<kMaxDim - 1>(search, ~std::uint64_t{0}, hash_of(search.block), found);
   }
 
  private:
@@ -111,19 +117,19 @@ class NeighbourIndex {
 
   /// Adds the neighbours in all blocks along the axes up to `Axis`; `wanted`: the places that the axes above leave.
   template <int Axis>
-  void collect(Search& search, std::uint64_t wanted, std::uint64_t hash) {
+  void collect(Search& search, std::uint64_t wanted, std::uint64_t hash, std::vector<Index>& found) const {
     if constexpr (Axis < 0) {
       const std::size_t b = slots_[slot_of(hash, search.block)];
       if (b == kNoBlock) return;
       const std::uint32_t* entries = entries_.data() + (b << block_size_);
       for (wanted &= blocks_[b].present; wanted != 0; wanted &= wanted - 1) {
-        found_.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
+        found.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
       }
     } else {
-      if (Axis >= dim()) return collect<Axis - 1>(search, wanted, hash);
+      if (Axis >= dim()) return collect<Axis - 1>(search, wanted, hash, found);
       const std::int32_t first = search.block[Axis];
       for (const std::uint64_t places : search.rows[Axis]->places) {
-        if (places != 0) collect<Axis - 1>(search, wanted & places, hash);
+        if (places != 0) collect<Axis - 1>(search, wanted & places, hash, found);
         ++search.block[Axis];
         hash += factor(Axis);
       }
@@ -181,7 +187,6 @@ class NeighbourIndex {
   std::vector<std::uint32_t> slots_;  // open addressing by block coordinates
   std::vector<Block> blocks_;
   std::vector<std::uint32_t> entries_;  // 2^block_size_ a block: its cells
-  std::vector<Index> found_;
 };
 
 }  // namespace taut::detail

@@ -65,6 +65,10 @@ void StartFinder::tabulate(Index num_pairs) {
                      options_.method != CorrectionMethod::grid;
   if (levels_.lazy()) return;
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
+  if (indexed_ != fine) {
+    neighbours_ = index_neighbours(*fine);
+    indexed_ = fine;
+  }
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
   const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
@@ -174,7 +178,8 @@ bool StartFinder::seeks_rivals() const {
 DistanceField StartFinder::march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const {
   MarchOptions march_options{.method = options_.march};
   if (!options_.all) march_options.target = target;
-  return march(surface_, cells, source, march_options, context_);
+  return march_over(surface_, cells, &cells == indexed_.get() ? neighbours_.get() : nullptr, source, march_options,
+                    context_);
 }
 
 DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "march/march_over.hpp"
 #include "query/cell_levels.hpp"
 #include "taut/march/barrier.hpp"
 #include "taut/march/distance_field.hpp"
@@ -37,7 +38,9 @@ class StartFinder {
 
   /// Makes sure that the points near (d x n) lie where cells are looked for.
   void prepare(const PointsIn& near) {
-    if (levels_.prepare(near)) table_.reset();
+    if (!levels_.prepare(near)) return;
+    table_.reset();
+    indexed_.reset();
   }
   /// Makes the cells of level 0, and a table of distances where that pays for `num_pairs` pairs.
   void tabulate(Index num_pairs);
@@ -77,6 +80,8 @@ class StartFinder {
   const Context& context_;
   mutable CellLevels levels_;  // makes cells when they are first asked for, under its own lock
   std::optional<DistanceTable> table_;
+  std::shared_ptr<SurfaceCells> indexed_;                // cells that many marches share...
+  std::shared_ptr<const AnyNeighbourIndex> neighbours_;  // ... and their neighbours
   double table_error_ = 0;  // of the lengths by the table, relative: rivals within it are sought
   double table_doubt_ = 0;  // a path this much longer than the table says is doubted
 };
