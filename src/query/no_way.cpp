@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace taut::detail {
@@ -11,6 +13,10 @@ namespace {
 
 /// |grad F| at a barrier, of that at the ends, below which a singular point is taken to be near (codimension 1).
 constexpr double kSingular = 0.05;
+/// A critical point is sought within this many cells of the barrier; the surface is taken to be singular there where
+/// parts of it come nearer than this to each other, relative to coordinates: rounding hides smaller gaps.
+constexpr double kPinchCells = 32;
+constexpr double kTouching = 1e-7;
 /// Radians.
 constexpr double kLeastCrease = 0.5;
 
@@ -20,17 +26,58 @@ double gradient_share(const Surface& surface, const Barrier& barrier, const Path
   return gradient(barrier.point) / std::min(gradient(result.from), gradient(result.to));
 }
 
+/// A critical point of F near x, where F vanishes too, or two parts of the surface miss each other narrowly.
+struct Pinch {
+  Vector point;
+  double gap = 0;  ///< how far the parts are apart, to second order, model units
+};
+
+/// By Newton's method for grad F = 0, within `reach` of x; none where that leads elsewhere (codimension 1).
+std::optional<Pinch> find_pinch(const Surface& surface, const Vector& x, double reach) {
+  constexpr int kMostSteps = 30;
+  constexpr double kStill = 1e-12;  // a step this small, of the reach, is the last
+  const Vector weight = Vector::Ones(1);
+  Pinch pinch{x, 0};
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> hessian(surface.hessian(pinch.point, weight));
+    const Vector& curvature = hessian.eigenvalues();
+    const double strongest = curvature.cwiseAbs().maxCoeff();
+    const Vector gradient = surface.jacobian(pinch.point);
+    if (!(strongest > 0) || !gradient.allFinite()) return std::nullopt;
+    // Directions in which F does not bend are left alone.
+    constexpr double kFlat = 1e-8;
+    const Vector bend = (curvature.array().abs() > kFlat * strongest).select(curvature.array().inverse(), 0.0);
+    const Vector move = hessian.eigenvectors() * bend.asDiagonal() * (hessian.eigenvectors().transpose() * gradient);
+    pinch.point -= move;
+    if (!((pinch.point - x).norm() <= reach)) return std::nullopt;
+    pinch.gap = 2 * std::sqrt(2 * std::abs(surface.value(pinch.point)(0)) / strongest);
+    if (move.norm() > kStill * reach) continue;
+    pinch.point = (pinch.point.array().abs() > kStill * reach).select(pinch.point, 0.0);  // rounding, when printed
+    return pinch;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_way) {
   const std::optional<Barrier>& barrier = no_way.barrier;
   result.status = Status::not_converged;
   const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
-  if (barrier && gradient_share(surface, *barrier, result) < kSingular) {
+  std::optional<Pinch> pinch;
+  const bool vanishing = barrier && gradient_share(surface, *barrier, result) < kSingular;
+  if (vanishing) pinch = find_pinch(surface, barrier->point, kPinchCells * result.cell);
+  if (pinch && pinch->gap > kTouching * std::max(1.0, pinch->point.norm())) {
+    result.message = fmt::format(
+        "no path was found on cells down to {:.3g}, nor by walks from both ends: near ({:.4g}) two parts of the "
+        "surface "
+        "come within {:.2g} of each other, be it sheets that nearly touch or the two sides of a thin neck",
+        result.cell, fmt::join(pinch->point, ", "), pinch->gap);
+  } else if (vanishing) {
     result.message = fmt::format(
         "the surface is singular between the two points: near ({:.4g}) its gradient falls to nothing; geodesics "
         "through a singular point are not supported",
-        fmt::join(barrier->point, ", "));
+        fmt::join(pinch ? pinch->point : barrier->point, ", "));
   } else if (!no_way.walked) {
     result.message = fmt::format(
         "no path was found: cells down to {:.3g} cannot tell the sheets of the surface apart, or the points lie on "
