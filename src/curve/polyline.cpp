@@ -42,6 +42,13 @@ Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs) {
   return result;
 }
 
+Points at_equal_parts(const PointsIn& nodes, Index count) {
+  const double length = polyline_length(nodes);
+  std::vector<double> arcs;
+  for (Index i = 0; i <= count; ++i) arcs.push_back(length * static_cast<double>(i) / static_cast<double>(count));
+  return at_arc_lengths(nodes, arcs);
+}
+
 std::vector<double> straying(const PointsIn& nodes, const std::vector<double>& arcs) {
   const Points ends = at_arc_lengths(nodes, arcs);
   std::vector<double> result(arcs.size() - 1, 0.0);

@@ -15,6 +15,9 @@ namespace taut::detail {
 /// Points at the given ascending arc lengths, d x n; the first and the last are the ends of the polyline exactly.
 [[nodiscard]] Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs);
 
+/// Points at `count` equal parts of the length, d x (count + 1), the ends of the polyline among them.
+[[nodiscard]] Points at_equal_parts(const PointsIn& nodes, Index count);
+
 /// For each of the n - 1 intervals of arc length: how far the polyline strays from the chord there, as a share of the
 /// interval. An arc that turns by an angle a strays by a / 8. Zero where fewer than four nodes are inside: a zigzag of
 /// the nodes themselves does not count.

@@ -16,19 +16,13 @@ constexpr double kSamePlace = 1e-3;
 constexpr double kSameErrors = 10;
 constexpr double kRounding = 1e-12;
 
-/// Points at equal parts of the length.
-Points stations(const Points& nodes) {
-  constexpr int kStations = 16;
-  std::vector<double> arcs;
-  const double length = polyline_length(nodes);
-  for (int i = 0; i <= kStations; ++i) arcs.push_back(length * i / kStations);
-  return at_arc_lengths(nodes, arcs);
-}
+constexpr Index kStations = 16;
 
 bool same_curve(const PathCandidate& a, const PathCandidate& b) {
   const double errors = kSameErrors * (a.length_error + b.length_error) + kRounding * a.length;
   if (std::abs(a.length - b.length) > errors) return false;
-  return (stations(a.points) - stations(b.points)).colwise().norm().maxCoeff() <= kSamePlace * a.length;
+  return (at_equal_parts(a.points, kStations) - at_equal_parts(b.points, kStations)).colwise().norm().maxCoeff() <=
+         kSamePlace * a.length;
 }
 
 }  // namespace

@@ -27,15 +27,6 @@ struct Track {
   Points stations;  // d x (kStations + 1), at equal parts of the length
 };
 
-Track track_of(const PathCandidate& geodesic) {
-  std::vector<double> arcs;
-  const double length = polyline_length(geodesic.points);
-  for (Index i = 0; i <= kStations; ++i) {
-    arcs.push_back(length * static_cast<double>(i) / static_cast<double>(kStations));
-  }
-  return {geodesic.length, at_arc_lengths(geodesic.points, arcs)};
-}
-
 /// Squared distances between the stations of a and those of b.
 Eigen::MatrixXd distances2(const Points& a, const Points& b) {
   Eigen::MatrixXd result(a.cols(), b.cols());
@@ -106,7 +97,9 @@ std::vector<StartPath> splices(const Surface& surface, const std::vector<PathCan
   std::vector<StartPath> found;
   if (geodesics.size() < 2) return found;
   std::vector<Track> tracks;
-  for (const PathCandidate& geodesic : geodesics) tracks.push_back(track_of(geodesic));
+  for (const PathCandidate& geodesic : geodesics) {
+    tracks.push_back({geodesic.length, at_equal_parts(geodesic.points, kStations)});
+  }
   const auto add = [&](const Track& first, const Track& second, const Eigen::MatrixXd& distance2) {
     for (const Crossing& at : crossings(distance2)) {
       StartPath path = splice(first, second, at);
