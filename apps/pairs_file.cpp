@@ -38,7 +38,11 @@ void PairsFile::Remover::operator()(std::filesystem::path* file) const {
 
 void PairsFile::keep_pipe(const Context& context) {
   std::ifstream pipe(path_, std::ios::binary);
-  std::string kept = (std::filesystem::temp_directory_path() / "taut-pairs-XXXXXX").string();
+  std::error_code missing;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(missing);
+  if (missing)
+    throw IoError("TMPDIR", "is no folder, the pairs from a pipe cannot be kept there; set it to one with room");
+  std::string kept = (folder / "taut-pairs-XXXXXX").string();
   const int file = mkstemp(kept.data());
   if (file < 0) throw IoError(kept, "cannot be made to keep the pairs from a pipe; set TMPDIR to a folder with room");
   close(file);

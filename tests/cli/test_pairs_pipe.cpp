@@ -29,6 +29,7 @@ TEST(PairsPipe, AnswersAsFromAFile) {
   std::thread writer([&] { std::ofstream(pipe) << lines; });
   const test::ProgramResult by_pipe = run_taut({"path", sphere, "--pairs", pipe});
   writer.join();
+  unsetenv("TMPDIR");
   const test::ProgramResult by_file = run_taut({"path", sphere, "--pairs", file});
   EXPECT_EQ(by_pipe.out, by_file.out);
   EXPECT_EQ(by_pipe.exit_code, 1);
