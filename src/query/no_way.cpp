@@ -17,6 +17,8 @@ constexpr double kSingular = 0.05;
 /// parts of it come nearer than this to each other, relative to coordinates: rounding hides smaller gaps.
 constexpr double kPinchCells = 32;
 constexpr double kTouching = 1e-7;
+/// How far apart normals are compared, relative to coordinates.
+constexpr double kHair = 1e-7;
 /// Radians.
 constexpr double kLeastCrease = 0.5;
 
@@ -24,6 +26,20 @@ double gradient_share(const Surface& surface, const Barrier& barrier, const Path
   if (surface.codim() > 1) return 1;
   const auto gradient = [&](const Vector& x) { return surface.jacobian(x).norm(); };
   return gradient(barrier.point) / std::min(gradient(result.from), gradient(result.to));
+}
+
+/// Does the normal jump at x: is it another one a hair's breadth away (codimension 1)?
+bool is_corner(const Surface& surface, const Vector& x) {
+  if (surface.codim() > 1) return false;
+  const double hair = kHair * std::max(1.0, x.norm());
+  const Vector normal = surface.jacobian(x).normalized();
+  for (Index axis = 0; axis < x.size(); ++axis) {
+    for (const double side : {-hair, hair}) {
+      const Vector there = surface.jacobian(x + side * Vector::Unit(x.size(), axis)).normalized();
+      if (!(normal.dot(there) > std::cos(kLeastCrease))) return true;
+    }
+  }
+  return false;
 }
 
 /// A critical point of F near x, where F vanishes too, or two parts of the surface miss each other narrowly.
@@ -88,6 +104,12 @@ void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_
         "no path was found, neither on cells of {:.3g}, coarser than the surface bends, nor by walks from both ends; "
         "give a smaller box around both points, or smaller cells",
         result.cell);
+  } else if (const Vector* corner = is_corner(surface, result.from) ? &result.from
+                                    : is_corner(surface, result.to) ? &result.to
+                                                                    : nullptr) {
+    result.message = fmt::format(
+        "the surface is not smooth at ({:.4g}): its normal jumps there; take a point beside the crease or corner",
+        fmt::join(*corner, ", "));
   } else if (crease) {
     result.message = fmt::format(
         "the surface is not smooth between the two points: near ({:.4g}) its normal turns by {:.0f} degrees within a "
