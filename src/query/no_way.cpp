@@ -85,10 +85,9 @@ void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_
   if (vanishing) pinch = find_pinch(surface, barrier->point, kPinchCells * result.cell);
   if (pinch && pinch->gap > kTouching * std::max(1.0, pinch->point.norm())) {
     result.message = fmt::format(
-        "no path was found on cells down to {:.3g}, nor by walks from both ends: near ({:.4g}) two parts of the "
-        "surface "
-        "come within {:.2g} of each other, be it sheets that nearly touch or the two sides of a thin neck",
-        result.cell, fmt::join(pinch->point, ", "), pinch->gap);
+        "no path was found on cells down to {:.3g}{}: near ({:.4g}) parts of the surface come within {:.2g} of each "
+        "other, be it sheets that nearly touch or the two sides of a thin neck",
+        result.cell, no_way.walked ? ", nor by walks from both ends" : "", fmt::join(pinch->point, ", "), pinch->gap);
   } else if (vanishing) {
     result.message = fmt::format(
         "the surface is singular between the two points: near ({:.4g}) its gradient falls to nothing; geodesics "
