@@ -93,21 +93,26 @@ Arrival<D, Scalar> arrival_between(const Neighbour<D, Scalar>& left, Scalar miss
   const Scalar v0 = kHalf * left.distance * left.distance;
   const Scalar rise = kHalf * right.distance * right.distance - v0;
   const Scalar bend = kHalf * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
-  // The rays themselves give t to first order; two Newton steps on the distances settle the direction.
+  // The rays themselves give t to first order; one step of third order (Chebyshev's method) settles the direction.
   Scalar t = std::clamp(miss_left / (miss_left - miss_right), Scalar{0}, Scalar{1});
-  constexpr int kSteps = 2;
-  for (int step = 0;; ++step) {
+  for (bool settled = false;; settled = true) {
     const Vec z = left.position + t * edge;
     const Scalar length = z.norm();
     const Scalar u = std::sqrt(std::max(Scalar{0}, 2 * (v0 + t * rise + bend * t * (1 - t))));
-    const Scalar along = length > 0 ? z.dot(edge) / length : Scalar{0};
-    const Scalar curvature = length > 0 ? (edge2 - along * along) / length : Scalar{0};  // of |z(t)|
-    if (step == kSteps || !(curvature > 0) || !(u > 0)) {
-      return {u + length, length > 0 ? Vec(-z / length) : left.gradient, true, left.source};
+    const Scalar per_length = 1 / length;
+    const Scalar along = z.dot(edge) * per_length;
+    const Scalar curvature = (edge2 - along * along) * per_length;  // of |z(t)|
+    if (settled || !(curvature > 0) || !(u > 0)) {
+      return {u + length, length > 0 ? Vec(-per_length * z) : left.gradient, true, left.source};
     }
-    const Scalar slope = (rise + bend * (1 - 2 * t)) / u;  // of sqrt(2 v(t))
-    const Scalar second = curvature - (2 * bend + slope * slope) / u;
-    t = std::clamp(t - (slope + along) / std::max(second, kHalf * curvature), Scalar{0}, Scalar{1});
+    const Scalar per_u = 1 / u;
+    const Scalar slope = (rise + bend * (1 - 2 * t)) * per_u;  // of sqrt(2 v(t)), then its second derivative
+    const Scalar bending = -(2 * bend + slope * slope) * per_u;
+    const Scalar third = -3 * (slope * bending * per_u + along * curvature * per_length);
+    const Scalar per_second = 1 / std::max(curvature + bending, kHalf * curvature);
+    const Scalar newton = (slope + along) * per_second;
+    const Scalar more = std::clamp(1 + kHalf * newton * third * per_second, kHalf, Scalar{2});
+    t = std::clamp(t - newton * more, Scalar{0}, Scalar{1});
   }
 }
 

@@ -1,8 +1,8 @@
 #include "march/chart_march.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <tuple>
 
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
@@ -17,8 +17,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Cells this part of a cell's size apart in distance may be settled in any order. Edges are shorter than the reach of
 /// the front.
 constexpr float kBucketsPerCell = 16;
-/// Farther than anything, and its square a number.
-constexpr float kNever = 1e18F;
+/// An offer that is better by no more than this part of a cell's size is not worth the trouble.
+constexpr float kWorthwhile = 0.25F;
+/// Square of what no offer can be better than.
+constexpr float kNoOffers = -kInfinity;
 
 SurfacePoint point_of(const SurfaceCells& cells, Index i) { return {cells.point(i).data(), cells.normals(i).data()}; }
 
@@ -33,9 +35,7 @@ Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v(1), v(0)}; }
 
 SurfaceCharts::SurfaceCharts(const SurfaceCells& cells, const std::vector<std::uint32_t>& first_link,
                              const std::vector<std::uint32_t>& links)
-    : cells_(cells), axes_(static_cast<std::size_t>(2 * cells.dim() * cells.num_cells())), first_link_(first_link) {
-  links_.resize(links.size());
-  for (Index i = 0; i < cells.num_cells(); ++i) most_links_ = std::max(most_links_, this->links(i).size());
+    : cells_(cells), axes_(static_cast<std::size_t>(2 * cells.dim() * cells.num_cells())), first_link_(1, 0) {
   with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() {
     const Index d = cells.dim();
     const Index k = cells.codim();
@@ -49,10 +49,19 @@ SurfaceCharts::SurfaceCharts(const SurfaceCells& cells, const std::vector<std::u
       }
     }
     Edge<D> edge;
+    const auto none = static_cast<std::uint32_t>(cells.num_cells());
     for (Index x = 0; x < cells.num_cells(); ++x) {
-      for (std::uint32_t l = first_link_[static_cast<std::size_t>(x)]; l < first_link_[static_cast<std::size_t>(x) + 1];
-           ++l) {
-        const auto y = static_cast<Index>(links[l]);
+      const std::size_t first = first_link[static_cast<std::size_t>(x)];
+      const std::size_t count = first_link[static_cast<std::size_t>(x) + 1] - first;
+      const std::size_t in_lanes = (count + kLanes - 1) / kLanes * kLanes;
+      most_links_ = std::max(most_links_, in_lanes);
+      linked_.resize(linked_.size() + in_lanes, none);
+      numbers_.resize(kNumbers * linked_.size(), 0);
+      std::uint32_t* linked = linked_.data() + first_link_.back();
+      float* numbers = numbers_.data() + kNumbers * first_link_.back();
+      first_link_.push_back(static_cast<std::uint32_t>(linked_.size()));
+      for (std::size_t l = 0; l < count; ++l) {
+        const auto y = static_cast<Index>(links[first + l]);
         make_edge<D, K>(point_of(cells, y), point_of(cells, x), d, k, edge);
         // Parallel transport: the tangent of the edge at y becomes its tangent at x, what is across stays.
         const Eigen::Vector2d there = unit(axes(y).transpose() * edge.chord);
@@ -62,7 +71,9 @@ SurfaceCharts::SurfaceCharts(const SurfaceCells& cells, const std::vector<std::u
         const Eigen::Vector2d position = -length * here;
         const Eigen::Matrix2d turn =
             here * there.transpose() + handed * quarter_turn(here) * quarter_turn(there).transpose();
-        links_[l] = {links[l], static_cast<float>(length), position.cast<float>(), turn.cast<float>()};
+        const double all[kNumbers] = {length, position(0), position(1), turn(0, 0), turn(0, 1), turn(1, 0), turn(1, 1)};
+        linked[l] = static_cast<std::uint32_t>(y);
+        for (std::size_t n = 0; n < kNumbers; ++n) numbers[n * in_lanes + l] = static_cast<float>(all[n]);
       }
     }
   });
@@ -80,44 +91,19 @@ std::optional<std::pair<double, Eigen::Vector2d>> SurfaceCharts::edge(Index sour
       });
 }
 
-ChartMarch::Neighbours::Neighbours(std::size_t most) {
-  for (std::vector<float>* entries :
-       {&position_x, &position_y, &gradient_x, &gradient_y, &distance, &length, &along, &estimate2, &miss}) {
-    entries->resize(most + kLanes);
-  }
-}
-
-void ChartMarch::Neighbours::set(std::size_t n, const Eigen::Vector2f& position_of, const Eigen::Vector2f& gradient_of,
-                                 float distance_of, float length_of) {
-  position_x[n] = position_of(0);
-  position_y[n] = position_of(1);
-  gradient_x[n] = gradient_of(0);
-  gradient_y[n] = gradient_of(1);
-  distance[n] = distance_of;
-  length[n] = length_of;
-}
-
-Neighbour<2, float> ChartMarch::Neighbours::operator[](std::size_t n) const {
-  return {{position_x[n], position_y[n]},
-          {gradient_x[n], gradient_y[n]},
-          distance[n],
-          length[n],
-          along[n],
-          std::sqrt(estimate2[n]),
-          0};
-}
-
 ChartMarch::ChartMarch(const SurfaceCharts& charts)
     : charts_(charts),
       front_(charts.num_cells(), 1 / kBucketsPerCell),
-      state_(static_cast<std::size_t>(charts.num_cells())),
-      settled_(charts.most_links()),
-      waiting_(charts.most_links()),
-      neighbours_(charts.most_links()) {}
+      state_(static_cast<std::size_t>(charts.num_cells()) + 1) {
+  for (std::vector<float>* entries : {&distance_, &gradient_x_, &gradient_y_, &offered2_, &along_, &miss_}) {
+    entries->resize(charts.most_links());
+  }
+}
 
 void ChartMarch::run(Index source) {
   source_ = source;
-  std::fill(state_.begin(), state_.end(), Cell{kInfinity, Eigen::Vector2f::Zero(), kInfinity, false, false});
+  std::fill(state_.begin(), state_.end(), Cell{kInfinity, {0, 0}, kInfinity});
+  state_.back().offered2 = kNoOffers;
   front_.clear();
   offer_direct(source);
   while (!front_.empty()) visit(front_.pop());
@@ -125,108 +111,92 @@ void ChartMarch::run(Index source) {
 
 /// Settles cell i and tells its neighbours, unless it has to wait, or cannot be reached after all.
 void ChartMarch::visit(Index i) {
-  sort_links(i);
-  const std::span waiting(waiting_.data(), num_waiting_);
+  const ChartLinks links = charts_.links(i);
+  gather(links);
   Cell& here = cell(i);
-  if (here.direct) {
-    const auto [length, direction] = *charts_.edge(source_, i, kDirectCells);
-    here.distance = static_cast<float>(length);
-    here.gradient = direction.cast<float>();
-    for (const ChartLink* link : waiting) offer_direct(link->cell);
-  } else {
-    const std::optional<Arrival<2, float>> arrival = solve(gather());
-    if (!arrival) return;
-    if (!arrival->enclosed && !here.delayed) {
-      here.delayed = true;
-      here.offered2 = arrival->distance * arrival->distance;
-      front_.set(i, arrival->distance);
-      return;
+  const bool waited = here.offered2 == kNoOffers;  // until nobody else came first, or for the source itself
+  if (const auto direct = waited ? charts_.edge(source_, i, kDirectCells) : std::nullopt) {
+    const auto& [length, direction] = *direct;
+    for (std::size_t j = 0; j < links.count; ++j) {
+      if (distance_[j] == kInfinity) offer_direct(links.cell[j]);
     }
-    here.distance = arrival->distance;
-    here.gradient = arrival->gradient;
+    settle(here, {static_cast<float>(length), direction.cast<float>(), true, 0}, links);
+    return;
   }
-  for (const ChartLink* link : waiting) offer(*link, here);
-}
-
-/// Which of the neighbours are settled is as good as random: no branches.
-void ChartMarch::sort_links(Index i) {
-  num_settled_ = 0;
-  num_waiting_ = 0;
-  for (const ChartLink& link : charts_.links(i)) {
-    const bool settled = cell(link.cell).distance < kInfinity;
-    settled_[num_settled_] = &link;
-    waiting_[num_waiting_] = &link;
-    num_settled_ += settled ? 1 : 0;
-    num_waiting_ += settled ? 0 : 1;
+  const std::optional<Arrival<2, float>> arrival = solve(links);
+  if (!arrival) return;
+  if (arrival->enclosed || waited) {
+    settle(here, *arrival, links);
+  } else {
+    here.offered2 = kNoOffers;
+    front_.set(i, arrival->distance);
   }
-}
-
-/// Fills the neighbours; returns the one with the least estimate.
-std::size_t ChartMarch::gather() {
-  Neighbours& n = neighbours_;
-  n.count = num_settled_;
-  for (std::size_t j = 0; j < n.count; ++j) {
-    const ChartLink& link = *settled_[j];
-    const Cell& there = cell(link.cell);
-    n.set(j, link.position, link.turn * there.gradient, there.distance, link.length);
-  }
-  const Eigen::Vector2f zero = Eigen::Vector2f::Zero();
-  for (std::size_t j = n.count; j % kLanes != 0; ++j) n.set(j, zero, zero, kNever, 0);
-  Least least;
-  for (std::size_t j = 0; j < n.count; j += kLanes) {
-    const Floats x = load(n.position_x, j);
-    const Floats y = load(n.position_y, j);
-    const Floats gx = load(n.gradient_x, j);
-    const Floats gy = load(n.gradient_y, j);
-    const Floats u = load(n.distance, j);
-    const Floats length = load(n.length, j);
-    const Floats along = -(gx * x + gy * y);
-    const Floats estimate2 = u * (u + 2 * along) + length * length;  // as circular_estimate2
-    store(along, n.along, j);
-    store(gy * x - gx * y, n.miss, j);
-    store(estimate2 > 0 ? estimate2 : all_lanes(0), n.estimate2, j);
-    least.take(estimate2, j);
-  }
-  return least.index();
 }
 
 /// The source offers cell j its distance, when j is near enough.
 void ChartMarch::offer_direct(Index j) {
-  if (cell(j).direct) return;
+  Cell& there = cell(j);
+  if (j == charts_.num_cells() || there.offered2 == kNoOffers) return;
   const auto direct = charts_.edge(source_, j, kDirectCells);
   if (!direct) return;
   front_.set(j, static_cast<float>(direct->first));
-  cell(j).direct = true;
-  cell(j).offered2 = -kInfinity;
+  there.offered2 = kNoOffers;
 }
 
-/// A cell, just settled, offers its neighbour what it makes of the distance there.
-void ChartMarch::offer(const ChartLink& link, const Cell& here) {
-  Cell& there = cell(link.cell);
-  const float along = here.gradient.dot(link.position);
-  float estimate2 = circular_estimate2(here.distance, along, link.length * link.length);
-  if (there.delayed) estimate2 = (here.distance + link.length) * (here.distance + link.length);
-  if (!(estimate2 < there.offered2)) return;
-  there.offered2 = estimate2;
-  front_.set(link.cell, std::sqrt(estimate2));
+/// Fills the neighbours.
+void ChartMarch::gather(const ChartLinks& links) {
+  nearest_ = {};
+  for (std::size_t j = 0; j < links.count; j += kLanes) {
+    const auto there = [&](std::size_t l) { return load(&cell(links.cell[j + l]).distance); };
+    Floats u = there(0);
+    Floats there_x = there(1);
+    Floats there_y = there(2);
+    Floats offered2 = there(3);
+    transpose(u, there_x, there_y, offered2);
+    const Floats x = load(links.position[0] + j);
+    const Floats y = load(links.position[1] + j);
+    const Floats length = load(links.length + j);
+    const Floats gx = load(links.turn[0][0] + j) * there_x + load(links.turn[0][1] + j) * there_y;
+    const Floats gy = load(links.turn[1][0] + j) * there_x + load(links.turn[1][1] + j) * there_y;
+    const Floats along = -(gx * x + gy * y);
+    nearest_.take(u * (u + 2 * along) + length * length, j);  // as circular_estimate2
+    store(u, &distance_[j]);
+    store(gx, &gradient_x_[j]);
+    store(gy, &gradient_y_[j]);
+    store(offered2, &offered2_[j]);
+    store(along, &along_[j]);
+    store(gy * x - gx * y, &miss_[j]);
+  }
+}
+
+/// All but its estimate.
+Neighbour<2, float> ChartMarch::neighbour(const ChartLinks& links, std::size_t j) const {
+  return {{links.position[0][j], links.position[1][j]},
+          {gradient_x_[j], gradient_y_[j]},
+          distance_[j],
+          links.length[j],
+          along_[j],
+          0,
+          0};
 }
 
 /// The ray through x passes between two neighbours, one on either side: of those on each side the one whose ray passes
 /// x most closely.
-std::optional<Arrival<2, float>> ChartMarch::solve(std::size_t first) {
-  const Neighbours& n = neighbours_;
-  if (n.count == 0) return std::nullopt;
-  const Floats branch_x = all_lanes(n.gradient_x[first]);
-  const Floats branch_y = all_lanes(n.gradient_y[first]);
+std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
+  if (!(nearest_.value() < kInfinity)) return std::nullopt;
+  const std::size_t first = nearest_.index();
+  const Floats branch_x = all_lanes(gradient_x_[first]);
+  const Floats branch_y = all_lanes(gradient_y_[first]);
   const Floats never = all_lanes(kInfinity);
   constexpr auto kBranch = static_cast<float>(kMinBranchCosine);
   constexpr auto kBeside = static_cast<float>(kBehind);
   Least least[2];  // with the ray to the left and to the right of x
-  for (std::size_t j = 0; j < n.count; j += kLanes) {
-    const Floats along = load(n.along, j);
-    const Floats length = load(n.length, j);
-    const Floats miss = load(n.miss, j);
-    const Floats cosine = load(n.gradient_x, j) * branch_x + load(n.gradient_y, j) * branch_y;
+  for (std::size_t j = 0; j < links.count; j += kLanes) {
+    const Floats along = load(&along_[j]);
+    const Floats length = load(links.length + j);
+    const Floats miss = load(&miss_[j]);
+    // Zero, as their gradient, for those not settled.
+    const Floats cosine = load(&gradient_x_[j]) * branch_x + load(&gradient_y_[j]) * branch_y;
     // Those beside or ahead of x only where nobody is behind.
     const Floats penalty = along < kBeside * length ? 4 * length : all_lanes(0);
     Floats measure = (miss < 0 ? -miss : miss) + penalty;
@@ -235,17 +205,45 @@ std::optional<Arrival<2, float>> ChartMarch::solve(std::size_t first) {
     least[0].take(miss < 0 ? never : measure, j);
     least[1].take(miss < 0 ? measure : never, j);
   }
-  const std::size_t left = least[0].index();
-  const std::size_t right = least[1].index();
   if (least[0].value() < kInfinity && least[1].value() < kInfinity) {
-    const Neighbour<2, float> pair[2] = {n[left], n[right]};
-    if (surrounds(pair[0], n.miss[left], pair[1], n.miss[right])) {
-      return arrival_between(pair[0], n.miss[left], pair[1], n.miss[right]);
+    const std::size_t left = least[0].index();
+    const std::size_t right = least[1].index();
+    const Neighbour<2, float> pair[2] = {neighbour(links, left), neighbour(links, right)};
+    if (surrounds(pair[0], miss_[left], pair[1], miss_[right])) {
+      return arrival_between(pair[0], miss_[left], pair[1], miss_[right]);
     }
   }
   one_by_one_.clear();
-  for (std::size_t j = 0; j < n.count; ++j) one_by_one_.push_back(n[j]);
+  for (std::size_t j = 0; j < links.count; ++j) {
+    if (!(distance_[j] < kInfinity)) continue;
+    Neighbour<2, float>& y = one_by_one_.emplace_back(neighbour(links, j));
+    y.estimate = std::sqrt(circular_estimate2(y.distance, y.along, y.length * y.length));
+  }
   return arrival_from_one(one_by_one_, 2);
+}
+
+/// The cell offers its neighbours what it makes of the distances there.
+void ChartMarch::settle(Cell& here, const Arrival<2, float>& arrival, const ChartLinks& links) {
+  here = {arrival.distance, {arrival.gradient(0), arrival.gradient(1)}, kNoOffers};
+  const Floats u = all_lanes(here.distance);
+  const Floats gx = all_lanes(here.gradient[0]);
+  const Floats gy = all_lanes(here.gradient[1]);
+  for (std::size_t j = 0; j < links.count; j += kLanes) {
+    const Floats length = load(links.length + j);
+    const Floats along = gx * load(links.position[0] + j) + gy * load(links.position[1] + j);
+    Floats estimate2 = u * (u + 2 * along) + length * length;  // as circular_estimate2
+    estimate2 = estimate2 > 0 ? estimate2 : all_lanes(0);
+    // Better by kWorthwhile, squared. What came in since they were gathered is the source's own offers.
+    unsigned better = bits(estimate2 < load(&offered2_[j]) - 2 * kWorthwhile * u);
+    for (; better != 0; better &= better - 1) {
+      const auto l = static_cast<std::size_t>(std::countr_zero(better));
+      const Index j_there = links.cell[j + l];
+      Cell& there = cell(j_there);
+      if (there.offered2 == kNoOffers) continue;
+      there.offered2 = estimate2[l];
+      front_.set(j_there, std::sqrt(estimate2[l]));
+    }
+  }
 }
 
 }  // namespace taut::detail

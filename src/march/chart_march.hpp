@@ -4,22 +4,24 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <utility>
 #include <vector>
 
 #include "march/arrival.hpp"
 #include "march/bucket_front.hpp"
+#include "march/lanes.hpp"
 #include "taut/cells/surface_cells.hpp"
 
 namespace taut::detail {
 
-/// An edge from a cell y to a cell x, unrolled into the chart of x. Half a cache line.
-struct ChartLink {
-  std::uint32_t cell;        ///< y
-  float length;              ///< geodesic distance of x and y, in cells
-  Eigen::Vector2f position;  ///< z: where y lies, x is at 0
-  Eigen::Matrix2f turn;      ///< carries tangent vectors from the chart of y to that of x, along the edge
+/// The edges from the cells y around a cell x, unrolled into the chart of x: entry j of each is edge j. In whole lanes,
+/// filled up with edges from a cell that no march settles.
+struct ChartLinks {
+  std::size_t count;
+  const std::uint32_t* cell;  ///< y
+  const float* length;        ///< geodesic distance of x and y, in cells
+  const float* position[2];   ///< z: where y lies, x is at 0
+  const float* turn[2][2];    ///< carries tangent vectors from the chart of y to that of x, along the edge
 };
 
 /// Orthonormal charts of the tangent planes at the valid cells of a surface (d - k = 2), with all edges between
@@ -33,12 +35,14 @@ class SurfaceCharts {
                 const std::vector<std::uint32_t>& links);
 
   [[nodiscard]] Index num_cells() const { return cells_.num_cells(); }
-  /// The largest number of links of a cell.
+  /// The largest number of links of a cell, in whole lanes.
   [[nodiscard]] std::size_t most_links() const { return most_links_; }
   [[nodiscard]] double cell_size() const { return cells_.grid().size(); }
-  [[nodiscard]] std::span<const ChartLink> links(Index i) const {
-    const auto at = static_cast<std::size_t>(i);
-    return {links_.data() + first_link_[at], first_link_[at + 1] - first_link_[at]};
+  [[nodiscard]] ChartLinks links(Index i) const {
+    const std::size_t first = first_link_[static_cast<std::size_t>(i)];
+    const std::size_t n = first_link_[static_cast<std::size_t>(i) + 1] - first;
+    const float* at = numbers_.data() + kNumbers * first;
+    return {n, linked_.data() + first, at, {at + n, at + 2 * n}, {{at + 3 * n, at + 4 * n}, {at + 5 * n, at + 6 * n}}};
   }
   /// The edge from cell `source` to cell x: its length, in cells, and its unit direction in the chart of x. Empty when
   /// no edge joins them or the chord is longer than `radius` cells.
@@ -49,10 +53,13 @@ class SurfaceCharts {
   }
 
  private:
+  static constexpr std::size_t kNumbers = 7;  // of a link
+
   const SurfaceCells& cells_;
   std::vector<double> axes_;
   std::vector<std::uint32_t> first_link_;
-  std::vector<ChartLink> links_;
+  std::vector<std::uint32_t> linked_;
+  std::vector<float> numbers_;  // each number of all links of a cell, one after the other
   std::size_t most_links_ = 0;
 };
 
@@ -68,27 +75,13 @@ class ChartMarch {
   /// Infinity where the march did not come.
   [[nodiscard]] float distance(Index i) const { return cell(i).distance; }
   /// The unit gradient in the chart of cell i; zero where the distance is 0 or infinite.
-  [[nodiscard]] const Eigen::Vector2f& gradient(Index i) const { return cell(i).gradient; }
+  [[nodiscard]] Eigen::Vector2f gradient(Index i) const { return {cell(i).gradient[0], cell(i).gradient[1]}; }
 
  private:
-  struct Cell {
-    float distance;            // infinite until it is settled
-    Eigen::Vector2f gradient;  // where it is settled
-    float offered2;            // the square of the best estimate so far, less than all others where direct
-    bool direct;               // the estimate is the edge from the source itself
-    bool delayed;              // has come first before, without neighbours on both sides of its ray
-  };
-  /// The settled neighbours of a cell, unrolled into its chart: entry n of each is neighbour n. Filled up to whole
-  /// lanes with neighbours infinitely far, so to speak.
-  struct Neighbours {
-    explicit Neighbours(std::size_t most);
-    void set(std::size_t n, const Eigen::Vector2f& position, const Eigen::Vector2f& gradient, float distance,
-             float length);
-    [[nodiscard]] Neighbour<2, float> operator[](std::size_t n) const;
-
-    std::size_t count = 0;
-    std::vector<float> position_x, position_y, gradient_x, gradient_y, distance, length, along, estimate2;
-    std::vector<float> miss;  // by how much the ray through it misses the cell, signed
+  struct alignas(Floats) Cell {
+    float distance;     // infinite until it is settled
+    float gradient[2];  // where it is settled
+    float offered2;     // the square of the best estimate so far; less than all where no offers are taken
   };
 
   [[nodiscard]] Cell& cell(Index i) { return state_[static_cast<std::size_t>(i)]; }
@@ -96,21 +89,20 @@ class ChartMarch {
 
   void visit(Index i);
   void offer_direct(Index j);
-  void offer(const ChartLink& link, const Cell& here);
-  void sort_links(Index i);
-  [[nodiscard]] std::size_t gather();
-  [[nodiscard]] std::optional<Arrival<2, float>> solve(std::size_t first);
+  void gather(const ChartLinks& links);
+  [[nodiscard]] Neighbour<2, float> neighbour(const ChartLinks& links, std::size_t j) const;
+  [[nodiscard]] std::optional<Arrival<2, float>> solve(const ChartLinks& links);
+  void settle(Cell& here, const Arrival<2, float>& arrival, const ChartLinks& links);
 
   const SurfaceCharts& charts_;
   Index source_ = 0;
   BucketFront front_;
-  std::vector<Cell> state_;
-  // Of the cell being visited: links to neighbours that are settled, and to the others.
-  std::vector<const ChartLink*> settled_;
-  std::vector<const ChartLink*> waiting_;
-  std::size_t num_settled_ = 0;
-  std::size_t num_waiting_ = 0;
-  Neighbours neighbours_;
+  std::vector<Cell> state_;  // of the cells, and of one that is never settled
+  // The neighbours of the cell being visited, settled or not, their gradients in its chart: entry j for link j.
+  std::vector<float> distance_, gradient_x_, gradient_y_, offered2_;
+  std::vector<float> along_;  // how far the cell lies ahead of the neighbour
+  std::vector<float> miss_;   // by how much the ray through the neighbour misses the cell, signed
+  Least nearest_;             // the least square of an estimate of the cell's distance
   std::vector<Neighbour<2, float>> one_by_one_;
 };
 

@@ -1,24 +1,42 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <vector>
 
 namespace taut::detail {
 
 /// A few numbers at a time, in the vector extension of GCC and Clang: what every processor has.
 inline constexpr std::size_t kLanes = 4;
 using Floats [[gnu::vector_size(kLanes * sizeof(float))]] = float;
+using Ints [[gnu::vector_size(kLanes * sizeof(std::int32_t))]] = std::int32_t;
 
 inline Floats all_lanes(float value) { return Floats{value, value, value, value}; }
-inline Floats load(const std::vector<float>& from, std::size_t at) {
+inline Floats load(const float* from) {
   Floats values;
-  std::memcpy(&values, from.data() + at, sizeof values);
+  std::memcpy(&values, from, sizeof values);
   return values;
 }
-inline void store(Floats values, std::vector<float>& to, std::size_t at) {
-  std::memcpy(to.data() + at, &values, sizeof values);
+inline void store(Floats values, float* to) { std::memcpy(to, &values, sizeof values); }
+
+/// Bit l is set where lane l of a comparison holds.
+inline unsigned bits(Ints comparison) {
+  comparison &= Ints{1, 2, 4, 8};
+  comparison |= __builtin_shufflevector(comparison, comparison, 2, 3, 0, 1);
+  return static_cast<unsigned>(comparison[0] | comparison[1]);
+}
+
+/// Four rows become columns.
+inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
+  const Floats ab_low = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Floats ab_high = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Floats cd_low = __builtin_shufflevector(c, d, 0, 4, 1, 5);
+  const Floats cd_high = __builtin_shufflevector(c, d, 2, 6, 3, 7);
+  a = __builtin_shufflevector(ab_low, cd_low, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_low, cd_low, 2, 3, 6, 7);
+  c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
+  d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
 
 /// The least of many values, kLanes of them taken at a time, and which it was (up to 2^24). Infinite ones do not count.
