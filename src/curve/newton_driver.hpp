@@ -358,6 +358,8 @@ class NewtonDriver : public NewtonSolver::Backend {
       // Shortening steps, or a neutral direction: what is left may be many times what the next step would gain.
       const double gain = kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
       result.length_error += std::max(4 * gain, 0.25 * options_.tolerance * check_.length);
+    } else {
+      result.length_error += kernel_.left() * kernel_.period() / std::max(check_.length, 1e-300);
     }
     result.length_error += soft_error();
     for (const double off : check_.element_off) {  // where the curve cuts a corner

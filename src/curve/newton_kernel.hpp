@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -95,13 +96,15 @@ class NewtonKernel {
   [[nodiscard]] double off_surface() const { return off_surface_; }  ///< max |n| at the last visit
   [[nodiscard]] int num_iterations() const { return iterations_; }
   [[nodiscard]] Index num_evaluated() const { return evaluated_; }
-  /// Did the last relaxation end with a full Newton step: then what is left is of second order in decrement().
+  /// Did the last relaxation end with a full Newton step: then no more energy than left() can be gained.
   [[nodiscard]] bool settled() const { return settled_; }
+  [[nodiscard]] double left() const { return left_; }
   /// Energy that may be left to gain along a direction in which it hardly changes.
   [[nodiscard]] double soft_energy() const { return soft_energy_; }
   void reset_counters() {
     iterations_ = 0;
     evaluated_ = 0;
+    worst_rate_ = 0;
   }
 
   /// Can the mesh tell minima from saddles: is every element alone positive definite.
@@ -123,11 +126,16 @@ class NewtonKernel {
     const double start_energy = energy_;
     push_ = kFirstPush;
     sunk_ = false;
+    left_ = kUnknown;
+    last_gain_ = 0;
     const int last = iterations_ + goal.max_iterations;
-    while (iterations_ < last) {
+    while (true) {
       context.check_cancelled();
-      ++iterations_;
       settled_ = false;
+      if (arrived(evaluator, goal)) return Relaxation::converged;
+      if (iterations_ >= last) return Relaxation::stalled;
+      ++iterations_;
+      left_ = kUnknown;
       soft_energy_ = 0;
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
       Progress progress = plan(evaluator, goal);
@@ -136,7 +144,6 @@ class NewtonKernel {
       if (progress == Progress::planned) progress = advance(evaluator, goal);
       if (progress == Progress::ended) return outcome_;
     }
-    return Relaxation::stalled;
   }
 
  private:
@@ -146,6 +153,10 @@ class NewtonKernel {
   static constexpr double kLevel = 1e-4;      // of the stiffness: curvature below is known only close to the geodesic
   static constexpr double kExact = 1e-24;     // of the energy
   static constexpr double kFirstPush = 0.03;  // of the length: the first step away from a saddle
+  static constexpr double kLeastRate = 10;    // of second-order convergence, in the energy's own size...
+  static constexpr double kRateSafety = 100;  // ... and by how much the worst that was seen is exceeded at most
+  static constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  static constexpr int kMostProjections = 3;
   static constexpr int kMostSinking = 30;
   static constexpr int kMostHalvings = 30;
   static constexpr int kFewHalvings = 2;
@@ -172,11 +183,29 @@ class NewtonKernel {
     return Progress::ended;
   }
 
+  // Where the steps promise that nothing is left worth another system, only the way to the surface is: is that so.
+  bool arrived(Evaluator& evaluator, const RelaxationGoal& goal) {
+    if constexpr (!System::kFactors) return false;
+    if (!(left_ <= worthless(goal)) || !goal.minimum) return false;
+    if (system_.confirm_minimum(curve_, evaluator, left_) != Confirmation::minimum) return false;
+    for (int round = 0; off_surface_ > goal.off_surface; ++round) {
+      curve_.x = base_;
+      visit(evaluator);
+      if (!measure() || round == kMostProjections) return false;
+    }
+    curve_.x = base_;
+    settled_ = true;
+    return true;
+  }
+
+  // Energy not worth a step.
+  [[nodiscard]] double worthless(const RelaxationGoal& goal) const { return std::max(goal.energy, 4e-16) * energy_; }
+
   // Newton's step, or a shortening one where the energy is not convex.
   Progress plan(Evaluator& evaluator, const RelaxationGoal& goal) {
     system_.linearise(evaluator, curve_, frame_);
     plan_ = {};
-    plan_.worthless = std::max(goal.energy, 4e-16) * energy_;
+    plan_.worthless = worthless(goal);
     definite_ = system_.factor(curve_, evaluator, true, true);
     if (!definite_) {
       plan_.soft = system_.soft_direction(curve_, evaluator);
@@ -186,6 +215,7 @@ class NewtonKernel {
     plan_.slope = system_.solve(step_);
     decrement_ = 0.5 * std::abs(plan_.slope);
     plan_.flat = decrement_ <= plan_.worthless;
+    watch_rate();
     if (!plan_.flat || !definite_) return Progress::planned;
     switch (system_.confirm_minimum(curve_, evaluator, plan_.worthless)) {
       case Confirmation::minimum: break;
@@ -237,13 +267,30 @@ class NewtonKernel {
     if (off_surface_ <= goal.off_surface) {
       curve_.x = base_;
       settled_ = (definite_ || !plan_.descend) && short_step;
-      if (settled_) curve_.x += step_;
+      if (settled_) {
+        curve_.x += step_;
+        left_ = std::min(decrement_, second_order(decrement_));
+      }
       return end(Relaxation::converged);
     }
     if (decrement_ > 1e-2 * goal.energy * energy_) return Progress::planned;
     curve_.x = base_;
     visit(evaluator);
-    return measure() ? Progress::moved : end(Relaxation::singular);
+    if (!measure()) return end(Relaxation::singular);
+    if (definite_ && short_step) left_ = decrement_;
+    return Progress::moved;
+  }
+
+  // Energy left after a full Newton step that gained this much, where no direction is soft.
+  [[nodiscard]] double second_order(double gain) const {
+    return kRateSafety * std::max(kLeastRate, worst_rate_) * gain * (gain / energy_);
+  }
+  // Takes note of how fast this solve converges, from one step worth its while to the next.
+  void watch_rate() {
+    if (plan_.flat) return;
+    const double gain = decrement_ / energy_;
+    if (last_gain_ > 0) worst_rate_ = std::max(worst_rate_, gain / (last_gain_ * last_gain_));
+    last_gain_ = gain;
   }
 
   // Takes the step as far as it leads down.
@@ -251,7 +298,10 @@ class NewtonKernel {
     const bool valley = definite_ && plan_.descend && degree() > 1 && decrement_ <= kInValley * energy_;
     const bool fresh = sunk_;
     sunk_ = false;
-    if (search(evaluator, plan_.slope, !plan_.descend, valley ? kFewHalvings : kMostHalvings)) return Progress::moved;
+    if (search(evaluator, plan_.slope, !plan_.descend, valley ? kFewHalvings : kMostHalvings)) {
+      if (definite_ && plan_.descend && !plan_.soft.found && share_ == 1) left_ = second_order(decrement_);
+      return Progress::moved;
+    }
     if (valley) {
       step_ = trial_step_;
       restore(evaluator);
@@ -401,7 +451,7 @@ class NewtonKernel {
     return false;
   }
 
-  // x = base_ + alpha step_, halving alpha until the energy falls enough and no node has left its sheet. `free`
+  // x = base_ + share_ step_, halving the share until the energy falls enough and no node has left its sheet. `free`
   // accepts any energy (a step towards a saddle).
   bool search(Evaluator& evaluator, double slope, bool free, int most_halvings) {
     const double energy = energy_;
@@ -411,18 +461,18 @@ class NewtonKernel {
     trial_step_ = step_;
     old_normal_ = curve_.normal;
     const double longest = trial_step_.colwise().norm().maxCoeff();
-    double alpha = std::min({1.0, 0.25 * length() / std::max(longest, 1e-300), largest_step(evaluator)});
+    share_ = std::min({1.0, 0.25 * length() / std::max(longest, 1e-300), largest_step(evaluator)});
     failure_ = Relaxation::stalled;
-    for (int halving = 0; halving < most_halvings; ++halving, alpha /= 2) {
-      curve_.x = trial_base_ + alpha * trial_step_;
+    for (int halving = 0; halving < most_halvings; ++halving, share_ /= 2) {
+      curve_.x = trial_base_ + share_ * trial_step_;
       visit(evaluator);
       if (!measure()) {
         failure_ = Relaxation::singular;
         continue;
       }
       failure_ = Relaxation::stalled;
-      if (!same_sheet(alpha, off)) continue;
-      if (free || energy_ <= energy + 1e-4 * alpha * slope + 1e-14 * energy) return true;
+      if (!same_sheet(share_, off)) continue;
+      if (free || energy_ <= energy + 1e-4 * share_ * slope + 1e-14 * energy) return true;
     }
     return false;
   }
@@ -488,6 +538,10 @@ class NewtonKernel {
   double energy_ = 0;
   double decrement_ = 0;
   double trial_energy_ = 0;  // where the last search began
+  double share_ = 1;         // of its step that it took
+  double left_ = 0;          // energy that may be left to gain, where that is known
+  double last_gain_ = 0;     // of the last step worth its while, of the energy; 0 before the first on a mesh
+  double worst_rate_ = 0;    // largest gain / (gain before)^2
   double off_surface_ = 0;
   int iterations_ = 0;
   Index evaluated_ = 0;

@@ -93,16 +93,20 @@ Arrival<D, Scalar> arrival_between(const Neighbour<D, Scalar>& left, Scalar miss
   const Scalar v0 = kHalf * left.distance * left.distance;
   const Scalar rise = kHalf * right.distance * right.distance - v0;
   const Scalar bend = kHalf * (left.distance * left.gradient.dot(edge) - right.distance * right.gradient.dot(edge));
-  // The rays themselves give t to first order; one step of third order (Chebyshev's method) settles the direction.
+  // The rays themselves give t to first order. A step of third order (Chebyshev's method) settles the direction, unless
+  // it is a long one.
   Scalar t = std::clamp(miss_left / (miss_left - miss_right), Scalar{0}, Scalar{1});
-  for (bool settled = false;; settled = true) {
+  constexpr Scalar kShort = 0.2;
+  constexpr int kMostSteps = 3;
+  bool settled = false;
+  for (int step = 0;; ++step) {
     const Vec z = left.position + t * edge;
     const Scalar length = z.norm();
     const Scalar u = std::sqrt(std::max(Scalar{0}, 2 * (v0 + t * rise + bend * t * (1 - t))));
     const Scalar per_length = 1 / length;
     const Scalar along = z.dot(edge) * per_length;
     const Scalar curvature = (edge2 - along * along) * per_length;  // of |z(t)|
-    if (settled || !(curvature > 0) || !(u > 0)) {
+    if (settled || step == kMostSteps || !(curvature > 0) || !(u > 0)) {
       return {u + length, length > 0 ? Vec(-per_length * z) : left.gradient, true, left.source};
     }
     const Scalar per_u = 1 / u;
@@ -112,7 +116,9 @@ Arrival<D, Scalar> arrival_between(const Neighbour<D, Scalar>& left, Scalar miss
     const Scalar per_second = 1 / std::max(curvature + bending, kHalf * curvature);
     const Scalar newton = (slope + along) * per_second;
     const Scalar more = std::clamp(1 + kHalf * newton * third * per_second, kHalf, Scalar{2});
-    t = std::clamp(t - newton * more, Scalar{0}, Scalar{1});
+    const Scalar next = std::clamp(t - newton * more, Scalar{0}, Scalar{1});
+    settled = std::abs(next - t) < kShort;
+    t = next;
   }
 }
 

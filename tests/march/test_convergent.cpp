@@ -76,7 +76,8 @@ TEST(ConvergentMarch, SeveralSourcesGiveTheMinimum) {
   const Surface sphere = test::unit_sphere();
   Points sources(3, 3);
   sources << 1, 0, -0.6, 0, 0.6, 0, 0, 0.8, 0.8;
-  SurfaceCells cells = test::all_cells(sphere, sources.col(0), 0.06);
+  constexpr double kCell = 0.06;
+  SurfaceCells cells = test::all_cells(sphere, sources.col(0), kCell);
   const DistanceField field = march(sphere, cells, sources);
   Errors errors;
   Index wrong_source = 0;
@@ -88,8 +89,8 @@ TEST(ConvergentMarch, SeveralSourcesGiveTheMinimum) {
     const Vector mine = sources.col(field.nearest_source[static_cast<std::size_t>(i)]);
     if (test::sphere_distance(mine, cells.point(i)) > nearest + 0.12) ++wrong_source;
   }
-  EXPECT_LT(errors.mean, 2e-4);
-  EXPECT_LT(errors.max, 1e-2);
+  EXPECT_LT(errors.mean, 1e-4);
+  EXPECT_LT(errors.max, kCell);  // where the territories of the sources meet the march is of first order
   EXPECT_EQ(wrong_source, 0);
 }
 
