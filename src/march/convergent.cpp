@@ -1,5 +1,6 @@
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,6 +28,8 @@ class ConvergentMarch {
         d_(field.sources.rows()),
         k_(field.source_normals.rows() / d_),
         direct_radius_(kDirectCells * cells_.grid().size()),
+        longest_(task.options.target ? task.options.longest : std::numeric_limits<double>::infinity()),
+        end_(task.options.target.value_or(Vector())),
         field_(task, field, true),
         target_(task, field),
         solver_(d_, k_),
@@ -136,14 +139,23 @@ class ConvergentMarch {
     } else if (!(estimate2 < std::pow(field_.front().key(j), 2))) {
       return;
     }
-    field_.set(j, std::sqrt(estimate2), s);
+    const double estimate = std::sqrt(estimate2);
+    if (leads_astray(j, estimate)) return;
+    field_.set(j, estimate, s);
     flags(j) &= static_cast<std::uint8_t>(~kDirect);
+  }
+
+  /// Is a path through cell j, that far from its source, too long before it reaches the target.
+  [[nodiscard]] bool leads_astray(Index j, double distance) const {
+    return longest_ < std::numeric_limits<double>::infinity() && distance + (cells_.point(j) - end_).norm() > longest_;
   }
 
   SurfaceCells& cells_;
   Index d_;
   Index k_;
   double direct_radius_;
+  double longest_;
+  Vector end_;  // the target
   GrowingField field_;
   TargetWatch<D, K> target_;
   ArrivalSolver<D, K> solver_;

@@ -24,6 +24,8 @@ namespace {
 constexpr double kOffset = 0.7;
 /// Landmarks this close to an end, in spacings, say nothing about ways.
 constexpr double kEndSpacings = 1;
+/// Between ends this close, in spacings, ways may differ that pass the same landmarks.
+constexpr double kClose = 5;
 /// Landmarks this close to a start, in spacings or relative to the distance to the nearer end, lie on the same way.
 constexpr double kSameWaySpacings = 0.8;
 constexpr double kSameWay = 0.15;
@@ -243,6 +245,19 @@ double DistanceTable::straying(const Way& way, const std::vector<Way>& known) co
   return most;
 }
 
+double DistanceTable::upper_bound(const VectorIn& p, const VectorIn& q) const {
+  const View from = look(p);
+  const View to = look(q);
+  if (from.distance.empty() || to.distance.empty()) return kFar;
+  return least_sum(from, to);
+}
+
+float DistanceTable::least_sum(const View& from, const View& to) const {
+  float least = kFar;
+  for (std::size_t l = 0; l < landmarks_.size(); ++l) least = std::min(least, from.distance[l] + to.distance[l]);
+  return least;
+}
+
 std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const VectorIn& q,
                                                   const StartPathOptions& options) const {
   std::vector<StartPath> paths;
@@ -256,9 +271,8 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
   // Landmarks on the way, the middle ones of most use.
   const double near_end = kEndSpacings * spacing_;
   std::vector<Passing> passing;
-  float shortest = kFar;
-  for (std::size_t l = 0; l < landmarks_.size(); ++l) shortest = std::min(shortest, from.distance[l] + to.distance[l]);
-  if (!(shortest < kFar) || shortest < 4 * near_end) return paths;
+  const float shortest = least_sum(from, to);
+  if (!(shortest < kFar) || shortest < kClose * spacing_) return paths;
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     const double a = from.distance[l];
     const double b = to.distance[l];

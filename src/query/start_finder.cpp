@@ -40,8 +40,13 @@ constexpr double kMostWrong = 0.03;
 constexpr double kDoubtSafety = 3;
 constexpr double kLeastTableDoubt = 0.004;
 constexpr double kMostTableDoubt = 0.03;
+/// Where the table bounds the distance, marches keep to the cells that paths no longer than the rivals run through, and
+/// so many more.
+constexpr double kMarginCells = 2;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Points ends(const Vector& p, const Vector& q) {
   Points x(p.size(), 2);
@@ -150,23 +155,38 @@ Starts StartFinder::walk(const Vector& p, const Vector& q) const {
 
 Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
-  Stopwatch watch;
+  const Stopwatch watch;
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
-  const double cells_seconds = watch.restart();
+  const double cells_seconds = watch.seconds();
+  // No rival is longer than this, by the table.
+  double longest = kInfinity;
+  if (table_) {
+    const double bound = table_->upper_bound(p, q);
+    longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * cells->grid().size();
+  }
+  Starts starts = find_within(longest, cells, p, q);
+  // What the table's coarse cells took for a way may be none.
+  if (starts.paths.empty() && longest < kInfinity) starts = find_within(kInfinity, cells, p, q);
+  starts.seconds.cells += cells_seconds;
+  return starts;
+}
+
+Starts StartFinder::find_within(double longest, const std::shared_ptr<SurfaceCells>& cells, const Vector& p,
+                                const Vector& q) const {
+  const Stopwatch watch;
   DistanceField from_p;
   std::optional<DistanceField> from_q;
   if (seeks_rivals() && !cells->is_lazy() && (p - q).norm() > kNoRivals * cells->grid().size()) {
     from_q.emplace();
     parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
-      if (first == 0) from_p = march_towards(*cells, p, q);
-      if (last == 2) from_q = march_towards(*cells, q, p);
+      if (first == 0) from_p = march_towards(*cells, p, q, longest);
+      if (last == 2) from_q = march_towards(*cells, q, p, longest);
     });
   } else {
-    from_p = march_towards(*cells, p, q);
+    from_p = march_towards(*cells, p, q, longest);
   }
-  const double march_seconds = watch.restart();
+  const double march_seconds = watch.seconds();
   Starts starts = continue_to(cells, from_p, q, std::move(from_q));
-  starts.seconds.cells += cells_seconds;
   starts.seconds.march += march_seconds;
   return starts;
 }
@@ -175,8 +195,9 @@ bool StartFinder::seeks_rivals() const {
   return options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
 }
 
-DistanceField StartFinder::march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const {
-  MarchOptions march_options{.method = options_.march};
+DistanceField StartFinder::march_towards(SurfaceCells& cells, const Vector& source, const Vector& target,
+                                         double longest) const {
+  MarchOptions march_options{.method = options_.march, .longest = longest};
   if (!options_.all) march_options.target = target;
   return march_over(surface_, cells, &cells == indexed_.get() ? neighbours_.get() : nullptr, source, march_options,
                     context_);
@@ -195,11 +216,11 @@ Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const Dista
   if (std::isfinite(distance)) {
     starts.rivals_sought = seeks_rivals();
     if (seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell)) {
-      if (!from_q) from_q = march_towards(*cells, q, from_p.sources.col(0));
-      starts.paths = start_paths(surface_, *cells, from_p, *from_q,
-                                 {.excess = options_.all ? std::numeric_limits<double>::infinity() : kExcess,
-                                  .max_paths = options_.all ? kMostWaysRound : kMostRivals},
-                                 context_);
+      if (!from_q) from_q = march_towards(*cells, q, from_p.sources.col(0), kInfinity);
+      starts.paths = start_paths(
+          surface_, *cells, from_p, *from_q,
+          {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
+          context_);
     }
     if (starts.paths.empty()) {
       Points descent = descend(surface_, *cells, from_p, q);

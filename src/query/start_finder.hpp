@@ -72,8 +72,12 @@ class StartFinder {
   };
   [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
-  /// The distances from `source`, as far as `target` needs them.
-  [[nodiscard]] DistanceField march_towards(SurfaceCells& cells, const Vector& source, const Vector& target) const;
+  /// Ways by marching on these cells, with all rivals no longer than `longest`.
+  [[nodiscard]] Starts find_within(double longest, const std::shared_ptr<SurfaceCells>& cells, const Vector& p,
+                                   const Vector& q) const;
+  /// The distances from `source`, as far as paths to `target` need them that are no longer than `longest`.
+  [[nodiscard]] DistanceField march_towards(SurfaceCells& cells, const Vector& source, const Vector& target,
+                                            double longest) const;
 
   const Surface& surface_;
   const PathOptions& options_;

@@ -29,6 +29,9 @@ class DistanceTable {
   [[nodiscard]] double spacing() const { return spacing_; }
   [[nodiscard]] std::size_t bytes() const;
 
+  /// The length of the shortest way past a landmark, model units: no less than the distance of p and q, up to the
+  /// table's error, and up to a few spacings more where they are close. Infinity where it knows of none.
+  [[nodiscard]] double upper_bound(const VectorIn& p, const VectorIn& q) const;
   /// As the function start_paths on fields from p and q: one start for each way that may be the shortest, if marched
   /// distances are wrong by no more than `options.excess`. Every way passes landmarks at most half a spacing off; what
   /// such a detour may cost decides which of them are looked at. Lengths are those of the ways past a landmark, by the
@@ -47,6 +50,7 @@ class DistanceTable {
   [[nodiscard]] Index nearest_cell(const VectorIn& x) const;
   [[nodiscard]] View look(const VectorIn& x) const;
   void walk(Index cell, std::size_t landmark, Way& way) const;
+  [[nodiscard]] float least_sum(const View& from, const View& to) const;
   [[nodiscard]] Way way_past(const View& from, const View& to, std::size_t landmark) const;
   [[nodiscard]] double distance_to(const std::vector<Way>& ways, Index i) const;
   [[nodiscard]] double straying(const Way& way, const std::vector<Way>& known) const;

@@ -16,6 +16,9 @@ struct MarchOptions {
   std::optional<Vector> target = std::nullopt;
   /// Leave out what lies farther away than this, model units, >= 0.
   double radius = std::numeric_limits<double>::infinity();
+  /// Leave out cells that no path to the target, if there is one, of at most this length leads through, model units.
+  /// Convergent marches only.
+  double longest = std::numeric_limits<double>::infinity();
 };
 
 /// Marches distances from `sources` (d x m surface points, anywhere in the cells) over the cells; lazy cells are grown
