@@ -60,13 +60,12 @@ void add_closed(const ClosedGeodesic& loop, nlohmann::ordered_json& json) {
   const bool known = loop.status == Status::ok && !loop.is_point;
   json["closed"] = {{"is_point", loop.is_point},
                     {"kink", known ? nlohmann::ordered_json(loop.kink) : nullptr},
-                    {"index", known ? nlohmann::ordered_json(loop.index) : nullptr},
                     {"neutral", known ? nlohmann::ordered_json(loop.neutral) : nullptr}};
 }
 
 void add_closed(const ClosedGeodesic& loop, std::vector<SceneFact>& facts) {
   if (loop.status != Status::ok || loop.is_point) return;
-  facts.push_back({"closed", fmt::format("kink {:.1e}, index {}{}", loop.kink, loop.index,
+  facts.push_back({"closed", fmt::format("kink {:.1e}{}", loop.kink,
                                          loop.neutral > 0 ? fmt::format(", {} neutral", loop.neutral) : "")});
 }
 

@@ -59,6 +59,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["length_error"] = has_path(result) ? number(result.length_error) : Json(nullptr);
   json["converged"] = result.status == Status::ok;
   json["locally_shortest"] = result.locally_shortest;
+  json["index"] = has_path(result) && result.index ? Json(*result.index) : Json(nullptr);
   if (result.conjugate_at) json["conjugate_at"] = *result.conjugate_at;
   json["residual"] = {{"surface", number(result.residual.surface)},
                       {"geodesic_curvature", number(result.residual.geodesic_curvature)}};
@@ -95,7 +96,13 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
   }
   std::string status(to_string(result.status));
   if (result.status == Status::ok && options.method != CorrectionMethod::grid) {
-    status += result.locally_shortest ? ", locally shortest" : ", not certified as locally shortest";
+    if (result.locally_shortest) {
+      status += ", locally shortest";
+    } else if (result.index.value_or(0) > 0) {
+      status += fmt::format(", not locally shortest: index {}", *result.index);
+    } else {
+      status += ", not certified as locally shortest";
+    }
   }
   if (!result.message.empty()) status += ": " + result.message;
   facts.push_back({"status", status});

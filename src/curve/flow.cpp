@@ -299,6 +299,7 @@ void Correction::judge(const FlowState& state, double coarse_length, FlowResult&
   if (state.converged) {
     const Index conjugate = solver_.first_conjugate_node(state.nodes);
     result.locally_shortest = conjugate == 0;
+    if (result.locally_shortest) result.index = 0;
     if (conjugate > 0) result.conjugate_at = detail::polyline_length(result.points.leftCols(conjugate + 1));
   }
 }
@@ -383,10 +384,12 @@ std::optional<FlowResult> chord_of_near_ends(const Surface& surface, const Point
   result.model_error = result.model_error_uniform = chord * turn * turn / 24;
   result.residual.surface = nodes.correction().colwise().norm().maxCoeff();
   result.locally_shortest = true;
+  result.index = 0;
   result.status = Status::ok;
   if (result.residual.surface > 1e-6 * chord + kEqual * scale && !equal) {
     result.status = Status::not_converged;
     result.locally_shortest = false;
+    result.index.reset();
     result.reason = "an end point does not lie on the surface";
   } else if (!surface.inside_domain(ends, 1e-6 * chord + kEqual * scale).all()) {
     result.status = Status::left_domain;

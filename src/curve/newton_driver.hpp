@@ -80,6 +80,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.status = Status::ok;
     result.length = (result.points.col(1) - result.points.col(0)).norm();
     result.locally_shortest = true;
+    result.index = 0;
     result.curve = SpectralCurve(1, {1.0}, result.points);
     return result;
   }
@@ -368,11 +369,15 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.residual = {.surface = check_.off_surface, .geodesic_curvature = check_.geodesic_curvature};
     result.num_iterations = kernel_.num_iterations();
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
-    result.index = kernel_.num_negative();
     result.locally_shortest = outcome == Relaxation::converged && kernel_.resolved() && kernel_.minimum();
-    if (result.index > 0) find_conjugate(result);
+    if (at_rest(outcome)) result.index = kernel_.num_negative();
+    if (result.index.value_or(0) > 0) find_conjugate(result);
     const bool in_domain = sample(start, result);
     decide(outcome, in_domain, result);
+  }
+
+  static bool at_rest(Relaxation outcome) {
+    return outcome == Relaxation::converged || outcome == Relaxation::saddle;
   }
 
   // The first conjugate point of a geodesic that is no minimum, and how many there are.
@@ -386,7 +391,7 @@ class NewtonDriver : public NewtonSolver::Backend {
         const ExponentialResult ray = exponential_map(surface_, kernel_.nodes().col(0), result.start_direction,
                                                       check_.length, options, *context_);
         result.conjugate_at = ray.conjugate_at;
-        if (ray.status == Status::ok) result.index = std::max(result.index, ray.index);
+        if (ray.status == Status::ok) result.index = std::max(*result.index, ray.index);
       } catch (const SingularPoint&) {
         return;
       }
@@ -449,14 +454,16 @@ class NewtonDriver : public NewtonSolver::Backend {
       // Straightening a bend of angle a in a path of length L gains up to a^2 L / 8; where a curve that is no geodesic
       // would come to rest, nobody knows.
       const double gain = check_.turning * check_.turning * check_.length / 8;
-      const bool at_rest = outcome == Relaxation::converged || outcome == Relaxation::saddle;
-      result.length_error = at_rest ? std::max(result.length_error, gain) : std::numeric_limits<double>::infinity();
+      result.length_error = at_rest(outcome) ? std::max(result.length_error, gain) : std::numeric_limits<double>::infinity();
     }
     if (result.status == Status::not_converged && check_.weakest_gradient < 1e-3) {
       result.status = Status::rank_deficient;
       result.reason = "the curve passes close to a point where the Jacobian of F loses rank";
     }
-    if (result.status == Status::rank_deficient) result.locally_shortest = false;
+    if (result.status == Status::rank_deficient) {
+      result.locally_shortest = false;
+      result.index.reset();
+    }
     if (!finite) result.length_error = std::numeric_limits<double>::infinity();
   }
 

@@ -88,6 +88,7 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
     geodesic = {};
     geodesic.status = Status::ok;
     geodesic.locally_shortest = true;
+    geodesic.index = 0;
     geodesic.points.resize(surface.dim(), 2);
     geodesic.points << result.from, result.to;
     geodesic.length = (result.to - result.from).norm();

@@ -24,6 +24,7 @@ ClosedGeodesic point_loop(const Vector& x) {
   result.is_point = true;
   result.message = "the loop shrinks to a point";
   result.locally_shortest = true;
+  result.index = 0;
   result.points = x.replicate(1, 2);
   return result;
 }
@@ -32,7 +33,6 @@ ClosedGeodesic closed(const GeodesicPolygon& polygon, double tolerance) {
   ClosedGeodesic result;
   static_cast<Geodesic&>(result) = polygon.geodesic(tolerance);
   result.kink = polygon.kink();
-  result.index = polygon.index();
   result.neutral = polygon.neutral();
   return result;
 }

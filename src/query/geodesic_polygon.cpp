@@ -77,6 +77,7 @@ Geodesic GeodesicPolygon::geodesic(double tolerance) const {
   result.length = length();
   result.length_error = length_error();
   result.locally_shortest = index_ == 0;
+  result.index = index_;
   result.start_direction = arcs_.front().start_direction;
   for (const NewtonResult& arc : arcs_) {
     result.residual.surface = std::max(result.residual.surface, arc.residual.surface);

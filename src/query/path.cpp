@@ -118,6 +118,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   if (p == q) {
     result.status = Status::ok;
     result.locally_shortest = true;
+    result.index = 0;
     result.points = chord(p, q);
     result.grid_path = result.points;
     result.cell = levels().size(0);

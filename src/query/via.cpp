@@ -61,6 +61,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
   whole.to = whole.legs.back().to;
   whole.status = Status::ok;
   whole.locally_shortest = true;
+  whole.index = 0;
   bool complete = true;
   for (std::size_t i = 0; i < num_legs; ++i) {
     const PathResult& leg = whole.legs[i];
@@ -72,6 +73,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.length += leg.length;
     whole.length_error += leg.length_error;
     whole.locally_shortest = whole.locally_shortest && leg.locally_shortest;
+    whole.index = whole.index && leg.index ? std::optional(*whole.index + *leg.index) : std::nullopt;
     whole.unique = whole.unique && leg.unique;
     whole.rivals_sought = whole.rivals_sought && leg.rivals_sought;
     whole.residual.surface = std::max(whole.residual.surface, leg.residual.surface);
@@ -89,6 +91,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.length = 0;
     whole.length_error = 0;
     whole.locally_shortest = false;
+    whole.index.reset();
   }
   return whole;
 }

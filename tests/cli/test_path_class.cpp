@@ -66,7 +66,8 @@ TEST(PathClass, ClosedSaysWhatItIs) {
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_NEAR(json["length"].get<double>(), 1.2 * pi, 1e-10);
   EXPECT_FALSE(json["closed"]["is_point"]);
-  EXPECT_EQ(json["closed"]["index"], 0);
+  EXPECT_EQ(json["index"], 0);
+  EXPECT_TRUE(json["locally_shortest"]);
   EXPECT_EQ(json["points"].front(), json["points"].back());
 
   const std::string small = write(folder, "small.csv", test::loop(20, [](double t) -> Vector {
@@ -79,7 +80,22 @@ TEST(PathClass, ClosedSaysWhatItIs) {
   EXPECT_EQ(shrunk["length"], 0.0);
   EXPECT_EQ(shrunk["message"], "the loop shrinks to a point");
   EXPECT_TRUE(shrunk["closed"]["is_point"]);
-  EXPECT_TRUE(shrunk["closed"]["index"].is_null());
+  EXPECT_TRUE(shrunk["closed"]["kink"].is_null());
+}
+
+// The second variation round the waist of a spheroid of half height 1.2 is that of -u'' - K u with K = 1 / 1.44 on a
+// circle of length 2 pi: its eigenvalues n^2 - K are negative for n = 0 alone.
+TEST(PathClass, CountsTheWaysToShortenALoop) {
+  const TempFolder folder;
+  const std::string waist = write(folder, "waist.csv", test::loop(30, [](double t) -> Vector {
+                                    return Eigen::Vector3d(std::cos(2 * pi * t), std::sin(2 * pi * t), 0);
+                                  }));
+  const ProgramResult result = run_taut({"path", "x^2+y^2+z^2/1.44=1", "--closed", waist, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_NEAR(json["length"].get<double>(), 2 * pi, 1e-10);
+  EXPECT_FALSE(json["locally_shortest"]);
+  EXPECT_EQ(json["index"], 1);
 }
 
 TEST(PathClass, WritesFiles) {

@@ -26,6 +26,7 @@ TEST(PathVia, WritesLegsInOrder) {
   const double quarter = std::acos(0.0);
   EXPECT_EQ(json["command"], "path");
   EXPECT_NEAR(json["length"].get<double>(), 3 * quarter, 1e-12);
+  EXPECT_EQ(json["index"], 0);
   ASSERT_EQ(json["legs"].size(), 3U);
   ASSERT_EQ(json["via"].size(), 2U);
   EXPECT_EQ(json["via"][1], nlohmann::json({0.0, 0.0, 1.0}));

@@ -21,6 +21,9 @@ struct Geodesic {
   double length_error = 0;             ///< honest estimate of |length - true length of this geodesic|, model units
   bool locally_shortest = false;       ///< by certificate: no conjugate point inside
   std::optional<double> conjugate_at;  ///< arc length from the start of the first conjugate point, when one is inside
+  /// Directions in which the length falls (Morse index): 0 = locally shortest. Newton's method with d - k > 65 counts
+  /// those in which it falls equally once. Empty where it was not found out: no geodesic, or the flow's on a saddle.
+  std::optional<int> index;
   CurveResidual residual;
   int num_iterations = 0;
   /// d x m in order, first and last exactly the end points given, every one on the surface: what to draw or write.

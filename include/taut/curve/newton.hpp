@@ -22,10 +22,7 @@ struct NewtonOptions {
 
 /// What Newton's method adds to a geodesic.
 struct NewtonResult : Geodesic {
-  SpectralCurve curve;  ///< the nodes lie on the surface; in between the curve is off by at most `residual.surface`
-  /// Directions in which the energy falls (Morse index of the discrete curve): 0 = a minimum. With d - k > 65, those in
-  /// which it falls equally count once.
-  int index = 0;
+  SpectralCurve curve;      ///< the nodes lie on the surface; in between the curve is off by at most `residual.surface`
   Index num_evaluated = 0;  ///< points at which F and its derivatives were evaluated
 };
 

@@ -5,15 +5,13 @@
 namespace taut {
 
 /// A closed geodesic. The PathResult part: `points` end with the first one again, `from` = `to` is that point, `length`
-/// is once round, `start_direction` the tangent there; `candidates` has this one alone.
+/// is once round, `start_direction` the tangent there; `candidates` has this one alone. `index` counts the independent
+/// ways to make it shorter to second order.
 struct ClosedGeodesic : PathResult {
   /// The loop shrinks to a point in its class: status ok, length 0, `points` that point twice; `message` says so.
   bool is_point = false;
   /// The largest angle between arriving and leaving at the points where its arcs are joined, radians.
   double kink = 0;
-  /// Morse index: how many independent ways there are to make it shorter to second order. 0 for a minimum, which is
-  /// what `locally_shortest` says.
-  int index = 0;
   /// Independent ways to move it without changing its length to second order, within what differences resolve: 1 for a
   /// loop round a cylinder, 2 for a great circle.
   int neutral = 0;
