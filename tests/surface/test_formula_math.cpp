@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "hwy/targets.h"
+#include "surface/simd_dispatch.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {
@@ -161,12 +161,11 @@ TEST(FormulaMath, EveryInstructionSetGivesTheSameBits) {
   const Points upper = x.array() + 0.1;
   const Points weight = Points::Random(2, n);
   Points first;
-  const std::int64_t available = hwy::SupportedTargets() | HWY_SCALAR;
-  for (const std::int64_t target :
-       {std::int64_t{0}, std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}, std::int64_t{HWY_SCALAR}}) {
-    if (target != 0 && (target & available) == 0) continue;
-    hwy::SetSupportedTargetsForTest(target);  // 0: what the machine has
-    hwy::GetChosenTarget().DeInit();
+  const detail::InstructionSet best = detail::instruction_set();
+  for (const auto set : {detail::InstructionSet::baseline, detail::InstructionSet::sse4, detail::InstructionSet::avx2,
+                         detail::InstructionSet::avx512}) {
+    if (!detail::has_instruction_set(set)) continue;
+    detail::use_instruction_set(set);
     const auto evaluator = function->make_evaluator();
     Points all(2 + 6 + 9 + 4, n);
     Points value(2, n);
@@ -188,10 +187,9 @@ TEST(FormulaMath, EveryInstructionSetGivesTheSameBits) {
     all << value, jacobian, hessian, lower_bound, upper_bound;
     if (first.size() == 0) first = all;
     EXPECT_EQ(std::memcmp(first.data(), all.data(), sizeof(double) * static_cast<std::size_t>(all.size())), 0)
-        << hwy::TargetName(target);
+        << static_cast<int>(set);
   }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
+  detail::use_instruction_set(best);
 }
 
 }  // namespace

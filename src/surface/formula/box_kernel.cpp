@@ -1,4 +1,5 @@
 #include "surface/formula/kernels.hpp"
+#include "surface/simd_dispatch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surface/formula/box_kernel.cpp"
@@ -175,10 +176,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace taut::detail {
 
-HWY_EXPORT(run_boxes_of_target);
-
 void run_boxes(const Tape& tape, const BoxArrays& arrays, std::size_t n, std::size_t block, double* slots) {
-  HWY_DYNAMIC_DISPATCH(run_boxes_of_target)(tape, arrays, n, block, slots);
+  TAUT_DISPATCH(run_boxes_of_target)(tape, arrays, n, block, slots);
 }
 
 }  // namespace taut::detail

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <new>
 #include <vector>
 
-#include "hwy/aligned_allocator.h"
 #include "surface/formula/kernels.hpp"
 
 namespace taut::detail {
@@ -18,6 +19,12 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kBlockBytes = 512 * 1024;
 constexpr std::size_t kMinBlock = 32;   // even if that does not fit
 constexpr std::size_t kMaxBlock = 128;  // beyond, decoding costs nothing any more
+
+/// Doubles on whole cache lines, as wide as any vector.
+constexpr std::align_val_t kAlignment{64};
+struct FreeAligned {
+  void operator()(double* slots) const { ::operator delete(slots, kAlignment); }
+};
 
 class FormulaEvaluator : public Evaluator {
  public:
@@ -50,15 +57,14 @@ class FormulaEvaluator : public Evaluator {
   const Tape* hessian_tape_ = nullptr;
   const Tape* hessian_times_tape_ = nullptr;
   bool hessian_too_large_ = false;
-  hwy::AlignedFreeUniquePtr<double[]> slots_;
+  std::unique_ptr<double[], FreeAligned> slots_;
   std::size_t num_slots_ = 0;
   std::vector<double> value_;  // when F is needed to see its NaNs but was not asked for
 };
 
 double* FormulaEvaluator::slots(std::size_t count) {
   if (count > num_slots_) {
-    slots_ = hwy::AllocateAligned<double>(count);
-    if (!slots_) throw std::bad_alloc();
+    slots_.reset(static_cast<double*>(::operator new(count * sizeof(double), kAlignment)));
     num_slots_ = count;
   }
   return slots_.get();

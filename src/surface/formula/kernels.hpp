@@ -26,8 +26,8 @@ struct PointArrays {
 /// True when any of the n numbers is NaN.
 [[nodiscard]] bool any_nan(const double* x, std::size_t n);
 
-/// Runs `tape` on n points, `block` of them at a time. `slots` holds tape.num_slots * block doubles, aligned as
-/// hwy::AllocateAligned does.
+/// Runs `tape` on n points, `block` of them at a time. `slots` holds tape.num_slots * block doubles, aligned to
+/// 64 bytes.
 void run_points(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block, double* slots);
 
 /// Boxes: n of them with `dim` coordinates. The bounds of entry e of output array i at box j are

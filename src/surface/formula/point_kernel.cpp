@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "surface/formula/kernels.hpp"
+#include "surface/simd_dispatch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surface/formula/point_kernel.cpp"
@@ -333,16 +334,12 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace taut::detail {
 
-HWY_EXPORT(lanes_of_target);
-HWY_EXPORT(any_nan_of_target);
-HWY_EXPORT(run_points_of_target);
+std::size_t num_lanes() { return TAUT_DISPATCH(lanes_of_target)(); }
 
-std::size_t num_lanes() { return HWY_DYNAMIC_DISPATCH(lanes_of_target)(); }
-
-bool any_nan(const double* x, std::size_t n) { return HWY_DYNAMIC_DISPATCH(any_nan_of_target)(x, n); }
+bool any_nan(const double* x, std::size_t n) { return TAUT_DISPATCH(any_nan_of_target)(x, n); }
 
 void run_points(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block, double* slots) {
-  HWY_DYNAMIC_DISPATCH(run_points_of_target)(tape, arrays, n, block, slots);
+  TAUT_DISPATCH(run_points_of_target)(tape, arrays, n, block, slots);
 }
 
 }  // namespace taut::detail

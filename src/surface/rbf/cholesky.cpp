@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "surface/simd_dispatch.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surface/rbf/cholesky.cpp"
@@ -125,11 +126,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace taut::detail {
 
-HWY_EXPORT(tile_rows);
-HWY_EXPORT(tile_columns);
-HWY_EXPORT(update_rows);
-HWY_EXPORT(solve_rows);
-
 namespace {
 
 constexpr Index kPanel = 128;
@@ -167,8 +163,8 @@ void pack(const double* p, Index stride, Index depth, Index first, Index last, I
 }  // namespace
 
 Index cholesky_in_place(double* a, Index n, Index stride, const Context& context) {
-  const Index tile_height = static_cast<Index>(HWY_DYNAMIC_DISPATCH(tile_rows)());
-  const Index tile_width = static_cast<Index>(HWY_DYNAMIC_DISPATCH(tile_columns)());
+  const Index tile_height = static_cast<Index>(TAUT_DISPATCH(tile_rows)());
+  const Index tile_width = static_cast<Index>(TAUT_DISPATCH(tile_columns)());
   const auto room = [&](Index height) { return static_cast<std::size_t>((n + height) * kPanel); };
   std::vector<double> packed_rows(room(tile_height));
   std::vector<double> packed_columns(room(tile_width));
@@ -182,14 +178,14 @@ Index cholesky_in_place(double* a, Index n, Index stride, const Context& context
     double* const panel = diagonal + width;
     double* const rest = panel + width * stride;
     detail::parallel_for(context, 0, below, kRowsPerTask, [&](Index first, Index last) {
-      HWY_DYNAMIC_DISPATCH(solve_rows)
+      TAUT_DISPATCH(solve_rows)
       (diagonal, static_cast<std::size_t>(width), static_cast<std::size_t>(stride), panel + first,
        static_cast<std::size_t>(last - first));
       pack(panel, stride, width, first, last, tile_height, packed_rows.data());
     });
     pack(panel, stride, width, 0, below, tile_width, packed_columns.data());
     detail::parallel_for(context, 0, below, kRowsPerTask, [&](Index first, Index last) {
-      HWY_DYNAMIC_DISPATCH(update_rows)
+      TAUT_DISPATCH(update_rows)
       (packed_rows.data(), packed_columns.data(), static_cast<std::size_t>(width), static_cast<std::size_t>(first),
        static_cast<std::size_t>(last), rest, static_cast<std::size_t>(stride));
     });

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "surface/simd_dispatch.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "surface/rbf/kernel_sum.cpp"
 #include <hwy/foreach_target.h>
@@ -182,8 +184,6 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace taut::detail {
 
-HWY_EXPORT(kernel_sum);
-
 namespace {
 constexpr Index kBlock = 8;
 }
@@ -209,7 +209,7 @@ void KernelSum::operator()(const double* x, double* value, double* gradient, dou
     scratch = heap.data();
   }
   const int order = hessian != nullptr ? 2 : gradient != nullptr ? 1 : 0;
-  HWY_DYNAMIC_DISPATCH(kernel_sum)
+  TAUT_DISPATCH(kernel_sum)
   (kernel_ == RbfKernel::quintic, order, blocks_.data(), static_cast<std::size_t>(num_blocks_),
    static_cast<std::size_t>(dim_), x, value, gradient, hessian, scratch);
 }
