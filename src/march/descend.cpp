@@ -7,6 +7,7 @@
 
 #include "march/dimensions.hpp"
 #include "march/field_reader.hpp"
+#include "march/march_over.hpp"
 #include "march/point_normals.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
@@ -27,13 +28,14 @@ constexpr double kNearness = 1e-4;
 template <int D, int K>
 class Descent {
  public:
-  Descent(const Surface& surface, const SurfaceCells& cells, const DistanceField& field)
+  Descent(const Surface& surface, const SurfaceCells& cells, const DistanceField& field,
+          const AnyNeighbourIndex* neighbours)
       : cells_(cells),
         field_(field),
         evaluator_(surface.make_evaluator()),
         d_(surface.dim()),
         k_(surface.codim()),
-        reader_(cells, field) {}
+        reader_(cells, field, neighbours) {}
 
   /// From the target to the source, d x m; empty when there is no way down.
   [[nodiscard]] Points run(const VectorIn& target, const VectorIn& target_normals) {
@@ -67,24 +69,36 @@ class Descent {
     return source >= 0;
   }
 
-  /// One step along the mean of the gradients at both its ends, second order. False when it does not lead down.
+  /// One step of second order: along the gradient as it has turned since the last one (Adams and Bashforth), or, at
+  /// first and where that leads nowhere, along the mean of the gradients at both ends (Heun). False when it does not
+  /// lead down.
   [[nodiscard]] bool follow_gradient(double& below) {
     if (!reading_ || !(reading_->arrival.distance < below)) return false;
-    const double distance = reading_->arrival.distance;
-    const double step = kStep * cells_.grid().size();
     const SmallVector<D> gradient = reading_->arrival.gradient;
-    Eigen::MatrixXd normals;
-    Vector y = x_ - step * gradient;
-    if (!settle(y, normals)) return false;
-    auto next = reader_.read({y.data(), normals.data()});
-    if (!next) return false;
-    const SmallVector<D> mean = gradient + next->arrival.gradient;
-    y = x_ - step * mean / mean.norm();
-    if (!settle(y, normals)) return false;
-    next = reader_.read({y.data(), normals.data()});
-    if (!next || !(next->arrival.distance < distance - kLeastDescent * step)) return false;
-    x_ = y;
-    normals_ = normals;
+    bool taken = follows_on_ && step_along(1.5 * gradient - 0.5 * last_gradient_, below);
+    if (!taken) {
+      const std::optional<Reading<D>> ahead = look_along(gradient);
+      taken = ahead && step_along(gradient + ahead->arrival.gradient, below);
+    }
+    follows_on_ = taken;
+    last_gradient_ = gradient;
+    return taken;
+  }
+
+  /// What the field says a step down against a direction, `there_` with the normals `normals_there_`.
+  [[nodiscard]] std::optional<Reading<D>> look_along(const SmallVector<D>& direction) {
+    there_ = x_ - kStep * cells_.grid().size() / direction.norm() * direction;
+    if (!settle(there_, normals_there_)) return std::nullopt;
+    return reader_.read({there_.data(), normals_there_.data()});
+  }
+
+  /// Takes such a step if it leads down.
+  [[nodiscard]] bool step_along(const SmallVector<D>& direction, double& below) {
+    const double distance = reading_->arrival.distance;
+    const std::optional<Reading<D>> next = look_along(direction);
+    if (!next || !(next->arrival.distance < distance - kLeastDescent * kStep * cells_.grid().size())) return false;
+    std::swap(x_, there_);
+    std::swap(normals_, normals_there_);
     below = distance;
     append(x_);
     reading_ = next;
@@ -108,6 +122,7 @@ class Descent {
     x_ = cells_.point(i);
     normals_ = Eigen::Map<const Vector>(cells_.normals(i).data(), d_ * k_);
     append(x_);
+    follows_on_ = false;
     return true;
   }
 
@@ -119,25 +134,35 @@ class Descent {
   FieldReader<D, K> reader_;
   std::vector<double> points_;
   Vector x_;
-  Vector normals_;
+  Eigen::MatrixXd normals_;
+  Vector there_;
+  Eigen::MatrixXd normals_there_;
   std::optional<Reading<D>> reading_;
   bool is_read_ = false;  // reading_ is of x_ already
+  SmallVector<D> last_gradient_;
+  bool follows_on_ = false;  // the last step ran along the gradients, from one of last_gradient_
 };
 
 }  // namespace
-}  // namespace detail
 
-Points descend(const Surface& surface, const SurfaceCells& cells, const DistanceField& field, const VectorIn& target) {
+Points descend_over(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
+                    const DistanceField& field, const VectorIn& target) {
   if (target.size() != surface.dim() || !target.allFinite()) {
     throw InvalidArgument("descend: the target must be a finite point in dimension " + std::to_string(surface.dim()));
   }
-  const Vector normals = detail::normals_at(surface, target).col(0);
+  const Vector normals = normals_at(surface, target).col(0);
   if (!normals.allFinite()) return Points(surface.dim(), 0);
   Points down;
-  detail::with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
-    down = detail::Descent<D, K>(surface, cells, field).run(target, normals);
+  with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
+    down = Descent<D, K>(surface, cells, field, neighbours).run(target, normals);
   });
   return down.rowwise().reverse();
+}
+
+}  // namespace detail
+
+Points descend(const Surface& surface, const SurfaceCells& cells, const DistanceField& field, const VectorIn& target) {
+  return detail::descend_over(surface, cells, nullptr, field, target);
 }
 
 }  // namespace taut

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "march/arrival.hpp"
-#include "march/stencil.hpp"
+#include "march/surroundings.hpp"
 #include "taut/march/distance_field.hpp"
 
 namespace taut::detail {
@@ -43,16 +43,17 @@ struct Reading {
   Index direct_source = -1;
 };
 
-/// Reads a field, finished or still growing, at any surface point.
+/// Reads a field, finished or still growing, at any surface point. `neighbours`: of complete cells, where they are
+/// known.
 template <int D, int K>
 class FieldReader {
  public:
-  FieldReader(const SurfaceCells& cells, const DistanceField& field)
+  FieldReader(const SurfaceCells& cells, const DistanceField& field, const AnyNeighbourIndex* neighbours = nullptr)
       : cells_(cells),
         field_(field),
         d_(field.sources.rows()),
         k_(field.source_normals.rows() / d_),
-        stencil_(d_),
+        surroundings_(cells, neighbours),
         solver_(d_, k_),
         frame_(d_, k_),
         cell_(static_cast<std::size_t>(d_)) {}
@@ -130,7 +131,7 @@ class FieldReader {
   std::span<const Index> known_around(const double* x) {
     cells_.grid().cell_of(Eigen::Map<const Vector>(x, d_), cell_);
     known_.clear();
-    for (const Index i : stencil_.block(cells_.grid(), cell_)) {
+    for (const Index i : surroundings_.around(cell_)) {
       if (i < field_.distance.size() && field_.distance(i) < std::numeric_limits<double>::infinity()) {
         known_.push_back(i);
       }
@@ -142,7 +143,7 @@ class FieldReader {
   const DistanceField& field_;
   Index d_;
   Index k_;
-  Stencil stencil_;
+  Surroundings<D> surroundings_;
   ArrivalSolver<D, K> solver_;
   TangentFrame<D, K> frame_;
   std::vector<std::int32_t> cell_;

@@ -62,8 +62,9 @@ class NeighbourIndex final : public AnyNeighbourIndex {
   }
 
   /// The valid cells around cell i in a fixed order, cell i among them: in `found`.
-  void around(Index i, std::vector<Index>& found) const {
-    const std::int32_t* cell = cells_.grid().cell(i).data();
+  void around(Index i, std::vector<Index>& found) const { around(cells_.grid().cell(i).data(), found); }
+  /// The same around integer coordinates, where there may be no cell.
+  void around(const std::int32_t* cell, std::vector<Index>& found) const {
     Search search;
     for (Index axis = 0; axis < dim(); ++axis) {
       search.block[axis] = (cell[axis] - 1) >> side_bits(axis);

@@ -12,10 +12,10 @@
 #include "core/parallel.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
+#include "march/march_over.hpp"
 #include "march/point_normals.hpp"
-#include "march/stencil.hpp"
+#include "march/surroundings.hpp"
 #include "taut/core/error.hpp"
-#include "taut/march/descend.hpp"
 
 namespace taut {
 namespace detail {
@@ -64,18 +64,17 @@ std::vector<BandCell> slice(const SurfaceCells& cells, const DistanceField& from
 /// The lowest cell of every hollow at least `depth` deep, lowest first. A hollow ends where it runs over into a lower
 /// one. `place`: a cell's number in the band; all -1 before and after.
 template <int D, int K>
-std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<BandCell>& band, double depth,
-                                 std::vector<std::int32_t>& place) {
+std::vector<std::size_t> hollows(const SurfaceCells& cells, Surroundings<D>& surroundings,
+                                 const std::vector<BandCell>& band, double depth, std::vector<std::int32_t>& place) {
   const Index d = cells.dim();
   DisjointSets flood(band.size());  // cells are numbered from the lowest up: a hollow is known by its lowest
   std::vector<std::uint8_t> deep(band.size(), 0);
-  Stencil stencil(d);
   Edge<D> edge;
   const auto point = [&](Index i) { return SurfacePoint{cells.point(i).data(), cells.normals(i).data()}; };
   for (std::size_t b = 0; b < band.size(); ++b) {
     const Index i = band[b].cell;
     place[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(b);
-    for (const Index j : stencil.block(cells.grid(), cells.grid().cell(i))) {
+    for (const Index j : surroundings.around(cells.grid().cell(i))) {
       const std::int32_t other = place[static_cast<std::size_t>(j)];
       if (other < 0 || j == i || !make_edge<D, K>(point(j), point(i), d, cells.codim(), edge)) continue;
       const std::uint32_t a = flood.find(static_cast<std::uint32_t>(other));
@@ -93,13 +92,14 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, const std::vector<Ba
 }
 
 /// Down from the crossing to both ends; empty when one descent fails.
-Points two_descents(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
-                    const DistanceField& from_q, const VectorIn& crossing, const Context& context) {
+Points two_descents(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
+                    const DistanceField& from_p, const DistanceField& from_q, const VectorIn& crossing,
+                    const Context& context) {
   Points first;
   Points second;
   parallel_for(context, 0, 2, 1, [&](Index begin, Index end) {
-    if (begin == 0) first = descend(surface, cells, from_p, crossing);
-    if (end == 2) second = descend(surface, cells, from_q, crossing);
+    if (begin == 0) first = descend_over(surface, cells, neighbours, from_p, crossing);
+    if (end == 2) second = descend_over(surface, cells, neighbours, from_q, crossing);
   });
   if (first.cols() < 2 || second.cols() < 2) return Points(surface.dim(), 0);
   Points path(surface.dim(), first.cols() + second.cols() - 1);
@@ -111,10 +111,13 @@ Points two_descents(const Surface& surface, const SurfaceCells& cells, const Dis
 template <int D, int K>
 class Ways {
  public:
-  Ways(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p, const DistanceField& from_q,
-       const StartPathOptions& options, const Context& context)
+  Ways(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
+       const DistanceField& from_p, const DistanceField& from_q, const StartPathOptions& options,
+       const Context& context)
       : surface_(surface),
         cells_(cells),
+        neighbours_(neighbours),
+        surroundings_(cells, neighbours),
         from_p_(from_p),
         from_q_(from_q),
         options_(options),
@@ -145,7 +148,7 @@ class Ways {
     if (first) least_ = band.front().length;
     const double lever = (least_ - std::abs(difference)) / 2;
     const double spread = std::max(kSpread * lever, kSpreadCells * cells_.grid().size());
-    for (const std::size_t b : hollows<D, K>(cells_, band, kNoise * lever, place_)) {
+    for (const std::size_t b : hollows<D, K>(cells_, surroundings_, band, kNoise * lever, place_)) {
       if (band[b].length > (1 + options_.excess) * least_) break;
       add(band[b], first ? 0 : spread);
     }
@@ -161,7 +164,8 @@ class Ways {
       if (paths_[w].length > crossing.length + kNoise * least_) continue;
       if (passes(paths_[w].points, normals_[w], crossing.cell, spread)) return;
     }
-    Points points = two_descents(surface_, cells_, from_p_, from_q_, cells_.point(crossing.cell), context_);
+    Points points =
+        two_descents(surface_, cells_, neighbours_, from_p_, from_q_, cells_.point(crossing.cell), context_);
     if (points.cols() == 0) return;
     normals_.push_back(normals_at(surface_, points));
     paths_.push_back({crossing.length, std::move(points)});
@@ -180,6 +184,8 @@ class Ways {
 
   const Surface& surface_;
   const SurfaceCells& cells_;
+  const AnyNeighbourIndex* neighbours_;
+  Surroundings<D> surroundings_;
   const DistanceField& from_p_;
   const DistanceField& from_q_;
   const StartPathOptions& options_;
@@ -191,11 +197,11 @@ class Ways {
 };
 
 }  // namespace
-}  // namespace detail
 
-std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
-                                   const DistanceField& from_q, const StartPathOptions& options,
-                                   const Context& context) {
+std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCells& cells,
+                                        const AnyNeighbourIndex* neighbours, const DistanceField& from_p,
+                                        const DistanceField& from_q, const StartPathOptions& options,
+                                        const Context& context) {
   if (from_p.method != MarchMethod::convergent || from_q.method != MarchMethod::convergent ||
       from_p.sources.cols() != 1 || from_q.sources.cols() != 1 || surface.dim() != cells.dim() ||
       from_p.distance.size() > cells.num_cells() || from_q.distance.size() > cells.num_cells()) {
@@ -204,9 +210,17 @@ std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& c
   if (!(options.excess >= 0) || options.max_paths < 1) {
     throw InvalidArgument("start_paths: excess must not be negative, and at least one path be asked for");
   }
-  return detail::with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
-    return detail::Ways<D, K>(surface, cells, from_p, from_q, options, context).find();
+  return with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
+    return Ways<D, K>(surface, cells, neighbours, from_p, from_q, options, context).find();
   });
+}
+
+}  // namespace detail
+
+std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
+                                   const DistanceField& from_q, const StartPathOptions& options,
+                                   const Context& context) {
+  return detail::start_paths_over(surface, cells, nullptr, from_p, from_q, options, context);
 }
 
 }  // namespace taut

@@ -87,7 +87,7 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
 /// Finds out whether the surface bends too much from one of the coarsest cells to the next for marched distances to
 /// tell ways apart, and makes them finer if it does, where that costs little (d = 3).
 void CellLevels::refine_to_curvature() {
-  std::shared_ptr<SurfaceCells>& coarsest = complete_.front();
+  std::shared_ptr<SurfaceCells>& coarsest = complete_.front().cells;
   for (int i = 0; i < kMostRefinements; ++i) {
     NormalTurns turns(*coarsest);
     resolved_ = turns.make_a_sheet() && turns.quantile(kTypically) <= kMostTurn;
@@ -104,7 +104,7 @@ std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds
   }
   const std::lock_guard lock(mutex_);
   complete_.resize(std::max(complete_.size(), static_cast<std::size_t>(level) + 1));
-  std::shared_ptr<SurfaceCells>& slot = complete_[static_cast<std::size_t>(level)];
+  std::shared_ptr<SurfaceCells>& slot = complete_[static_cast<std::size_t>(level)].cells;
   if (slot) return slot;
   if (grows()) {
     slot = std::make_shared<SurfaceCells>(surface_, grow(surface_, surface_.samples()->points, size(level), context_),
@@ -114,6 +114,14 @@ std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds
     if (level == 0 && cell_ == 0) refine_to_curvature();
   }
   return slot;
+}
+
+std::shared_ptr<const AnyNeighbourIndex> CellLevels::neighbours(int level) {
+  if (lazy()) return nullptr;
+  const std::lock_guard lock(mutex_);
+  Complete& slot = complete_.at(static_cast<std::size_t>(level));
+  if (!slot.neighbours) slot.neighbours = index_neighbours(*slot.cells);
+  return slot.neighbours;
 }
 
 Vector CellLevels::on_surface(const VectorIn& x, const char* name) const {

@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include "march/march_over.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
@@ -37,6 +38,8 @@ class CellLevels {
   /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are
   /// shared by all callers, who must not ask for more than their const interface; they may call from several threads.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
+  /// Who neighbours whom in the complete cells of a level, made when first asked for; null for lazy ones.
+  [[nodiscard]] std::shared_ptr<const AnyNeighbourIndex> neighbours(int level);
   /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
   [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;
 
@@ -61,7 +64,11 @@ class CellLevels {
   bool resolved_ = true;
   Box box_;
   std::mutex mutex_;
-  std::vector<std::shared_ptr<SurfaceCells>> complete_;  // a level each, null until asked for
+  struct Complete {
+    std::shared_ptr<SurfaceCells> cells;
+    std::shared_ptr<const AnyNeighbourIndex> neighbours;
+  };
+  std::vector<Complete> complete_;  // a level each, null until asked for
 };
 
 /// "1,0,0.5": a point as the command line takes it.

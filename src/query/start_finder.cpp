@@ -70,10 +70,6 @@ void StartFinder::tabulate(Index num_pairs) {
                      options_.method != CorrectionMethod::grid;
   if (levels_.lazy()) return;
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
-  if (indexed_ != fine) {
-    neighbours_ = index_neighbours(*fine);
-    indexed_ = fine;
-  }
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
   const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
@@ -157,6 +153,7 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
   const Stopwatch watch;
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
+  const Ground ground{cells, levels_.neighbours(level)};
   const double cells_seconds = watch.seconds();
   // No rival is longer than this, by the table.
   double longest = kInfinity;
@@ -164,29 +161,28 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
     const double bound = table_->upper_bound(p, q);
     longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * cells->grid().size();
   }
-  Starts starts = find_within(longest, cells, p, q);
+  Starts starts = find_within(longest, ground, p, q);
   // What the table's coarse cells took for a way may be none.
-  if (starts.paths.empty() && longest < kInfinity) starts = find_within(kInfinity, cells, p, q);
+  if (starts.paths.empty() && longest < kInfinity) starts = find_within(kInfinity, ground, p, q);
   starts.seconds.cells += cells_seconds;
   return starts;
 }
 
-Starts StartFinder::find_within(double longest, const std::shared_ptr<SurfaceCells>& cells, const Vector& p,
-                                const Vector& q) const {
+Starts StartFinder::find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const {
   const Stopwatch watch;
   DistanceField from_p;
   std::optional<DistanceField> from_q;
-  if (seeks_rivals() && !cells->is_lazy() && (p - q).norm() > kNoRivals * cells->grid().size()) {
+  if (seeks_rivals() && !ground.cells->is_lazy() && (p - q).norm() > kNoRivals * ground.cells->grid().size()) {
     from_q.emplace();
     parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
-      if (first == 0) from_p = march_towards(*cells, p, q, longest);
-      if (last == 2) from_q = march_towards(*cells, q, p, longest);
+      if (first == 0) from_p = march_towards(ground, p, q, longest);
+      if (last == 2) from_q = march_towards(ground, q, p, longest);
     });
   } else {
-    from_p = march_towards(*cells, p, q, longest);
+    from_p = march_towards(ground, p, q, longest);
   }
   const double march_seconds = watch.seconds();
-  Starts starts = continue_to(cells, from_p, q, std::move(from_q));
+  Starts starts = continue_to(ground, from_p, q, std::move(from_q));
   starts.seconds.march += march_seconds;
   return starts;
 }
@@ -195,40 +191,40 @@ bool StartFinder::seeks_rivals() const {
   return options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
 }
 
-DistanceField StartFinder::march_towards(SurfaceCells& cells, const Vector& source, const Vector& target,
+DistanceField StartFinder::march_towards(const Ground& ground, const Vector& source, const Vector& target,
                                          double longest) const {
   MarchOptions march_options{.method = options_.march, .longest = longest};
   if (!options_.all) march_options.target = target;
-  return march_over(surface_, cells, &cells == indexed_.get() ? neighbours_.get() : nullptr, source, march_options,
-                    context_);
+  return march_over(surface_, *ground.cells, ground.neighbours.get(), source, march_options, context_);
 }
 
 DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {
   return march(surface_, cells, p, MarchOptions{.method = options_.march}, context_);
 }
 
-Starts StartFinder::continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p, const Vector& q,
+Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
                                 std::optional<DistanceField> from_q) const {
   const Stopwatch watch;
+  SurfaceCells& cells = *ground.cells;
   Starts starts;
-  starts.cell = cells->grid().size();
-  const double distance = distance_at(surface_, *cells, from_p, q)(0);
+  starts.cell = cells.grid().size();
+  const double distance = distance_at(surface_, cells, from_p, q)(0);
   if (std::isfinite(distance)) {
     starts.rivals_sought = seeks_rivals();
     if (seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell)) {
-      if (!from_q) from_q = march_towards(*cells, q, from_p.sources.col(0), kInfinity);
-      starts.paths = start_paths(
-          surface_, *cells, from_p, *from_q,
+      if (!from_q) from_q = march_towards(ground, q, from_p.sources.col(0), kInfinity);
+      starts.paths = start_paths_over(
+          surface_, cells, ground.neighbours.get(), from_p, *from_q,
           {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
           context_);
     }
     if (starts.paths.empty()) {
-      Points descent = descend(surface_, *cells, from_p, q);
+      Points descent = descend_over(surface_, cells, ground.neighbours.get(), from_p, q);
       if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
     }
   }
-  if (starts.paths.empty()) starts.barrier = find_barrier(*cells, from_p, q);
-  starts.cells = std::move(cells);
+  if (starts.paths.empty()) starts.barrier = find_barrier(cells, from_p, q);
+  starts.cells = ground.cells;
   starts.seconds.march = watch.seconds();
   return starts;
 }

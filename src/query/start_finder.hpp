@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "march/march_over.hpp"
@@ -38,9 +39,7 @@ class StartFinder {
 
   /// Makes sure that the points near (d x n) lie where cells are looked for.
   void prepare(const PointsIn& near) {
-    if (!levels_.prepare(near)) return;
-    table_.reset();
-    indexed_.reset();
+    if (levels_.prepare(near)) table_.reset();
   }
   /// Makes the cells of level 0, and a table of distances where that pays for `num_pairs` pairs.
   void tabulate(Index num_pairs);
@@ -54,9 +53,11 @@ class StartFinder {
   [[nodiscard]] Starts find(const Vector& p, const Vector& q, int level) const;
   /// The distances from p over all cells of level 0, for `continue_to`.
   [[nodiscard]] DistanceField march_all(SurfaceCells& cells, const Vector& p) const;
-  /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
-  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p, const Vector& q,
-                                   std::optional<DistanceField> from_q = std::nullopt) const;
+  /// Ways where the distances from p over the cells of level 0 are there already, at least up to q.
+  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
+                                   const Vector& q) const {
+    return continue_to({std::move(cells), levels_.neighbours(0)}, from_p, q, std::nullopt);
+  }
   /// The cells of a level, shared unless they are lazy.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;
 
@@ -72,11 +73,18 @@ class StartFinder {
   };
   [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
+  /// Cells to march over, and their neighbours if they are complete.
+  struct Ground {
+    std::shared_ptr<SurfaceCells> cells;
+    std::shared_ptr<const AnyNeighbourIndex> neighbours;
+  };
   /// Ways by marching on these cells, with all rivals no longer than `longest`.
-  [[nodiscard]] Starts find_within(double longest, const std::shared_ptr<SurfaceCells>& cells, const Vector& p,
-                                   const Vector& q) const;
+  [[nodiscard]] Starts find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const;
+  /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
+  [[nodiscard]] Starts continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
+                                   std::optional<DistanceField> from_q) const;
   /// The distances from `source`, as far as paths to `target` need them that are no longer than `longest`.
-  [[nodiscard]] DistanceField march_towards(SurfaceCells& cells, const Vector& source, const Vector& target,
+  [[nodiscard]] DistanceField march_towards(const Ground& ground, const Vector& source, const Vector& target,
                                             double longest) const;
 
   const Surface& surface_;
@@ -84,8 +92,6 @@ class StartFinder {
   const Context& context_;
   mutable CellLevels levels_;  // makes cells when they are first asked for, under its own lock
   std::optional<DistanceTable> table_;
-  std::shared_ptr<SurfaceCells> indexed_;                // cells that many marches share...
-  std::shared_ptr<const AnyNeighbourIndex> neighbours_;  // ... and their neighbours
   double table_error_ = 0;  // of the lengths by the table, relative: rivals within it are sought
   double table_doubt_ = 0;  // a path this much longer than the table says is doubted
 };
