@@ -35,6 +35,11 @@ constexpr double kSurelySame = 0.5;
 constexpr double kSameStraying = 1.25;
 constexpr double kWalkNoise = 0.5;
 constexpr Index kMostUnsure = 4;  // so many landmarks of a pair are worth the walk
+/// Where cells are too coarse, a march may take a detour. A way past another landmark that is shorter than the marched
+/// one by more than this part tells.
+constexpr float kShortcut = 0.003F;
+/// Shortcuts run past landmarks that are on ways longer than the shortest by no more than this part.
+constexpr float kNearWays = 0.25F;
 
 /// Landmarks that share the memory of a march, and a cache line of the table.
 constexpr Index kLandmarksAtATime = 16;
@@ -46,7 +51,8 @@ constexpr float kFar = std::numeric_limits<float>::infinity();
 struct DistanceTable::View {
   Vector x;
   Index cell = CellGrid::kNone;
-  std::vector<float> distance;  // to every landmark
+  std::vector<float> marched;   // the distance of every landmark
+  std::vector<float> distance;  // the same with shortcuts
 };
 
 DistanceTable::DistanceTable(const Surface& surface, SurfaceCells cells, Index num_landmarks, const Context& context)
@@ -62,6 +68,10 @@ DistanceTable::DistanceTable(const Surface& surface, SurfaceCells cells, Index n
     throw OutOfMemory("the distance table does not fit the memory");
   table_.resize(size);
   fill(surface, context);
+  const auto size_of_cells = static_cast<float>(cells_.grid().size());
+  for (const Index landmark : landmarks_) {
+    for (std::size_t l = 0; l < landmarks_.size(); ++l) between_.push_back(size_of_cells * row(landmark)[l]);
+  }
 }
 
 /// Cells no closer to each other than the spacing, which is adapted until their number fits.
@@ -169,25 +179,47 @@ Index DistanceTable::nearest_cell(const VectorIn& x) const {
 }
 
 DistanceTable::View DistanceTable::look(const VectorIn& x) const {
-  View view{x, nearest_cell(x), {}};
+  View view{x, nearest_cell(x), {}, {}};
   if (view.cell == CellGrid::kNone) return view;
   const std::size_t n = landmarks_.size();
   const float* distance = row(view.cell);
   const double size = cells_.grid().size();
   const Eigen::VectorXf step = ((x - cells_.point(view.cell)) / size).cast<float>();
-  view.distance.assign(n, 0);
+  std::vector<float>& marched = view.marched;
+  marched.assign(n, 0);
   for (Index axis = 0; axis < cells_.dim(); ++axis) {
     const float* gradient = distance + static_cast<std::size_t>(axis + 1) * n;
-    for (std::size_t l = 0; l < n; ++l) view.distance[l] += step(axis) * gradient[l];
+    for (std::size_t l = 0; l < n; ++l) marched[l] += step(axis) * gradient[l];
   }
   // Exact for a point source in the plane.
   const float step2 = step.squaredNorm();
   for (std::size_t l = 0; l < n; ++l) {
     const float u = distance[l];
-    const float cells = u < kFar ? std::sqrt(std::max(0.0F, u * u + 2 * u * view.distance[l] + step2)) : kFar;
-    view.distance[l] = static_cast<float>(size) * cells;
+    const float cells = u < kFar ? std::sqrt(std::max(0.0F, u * u + 2 * u * marched[l] + step2)) : kFar;
+    marched[l] = static_cast<float>(size) * cells;
   }
+  view.distance = marched;
   return view;
+}
+
+/// Of two points at once, since only landmarks near the ways between them matter. False where there is no such way.
+bool DistanceTable::take_shortcuts(View& from, View& to) const {
+  if (from.marched.empty() || to.marched.empty()) return false;
+  const std::size_t n = landmarks_.size();
+  const float near = (1 + kNearWays) * least_sum(from, to);
+  if (!(near < kFar)) return false;
+  for (std::size_t m = 0; m < n; ++m) {
+    if (!(from.marched[m] + to.marched[m] <= near)) continue;
+    const float* onwards = between_.data() + m * n;
+    for (View* view : {&from, &to}) {
+      const float here = view->marched[m];
+      float* distance = view->distance.data();
+      for (std::size_t l = 0; l < n; ++l) {
+        distance[l] = std::min(distance[l], (1 + kShortcut) * (here + onwards[l]));
+      }
+    }
+  }
+  return true;
 }
 
 /// Steepest descent from a cell to a landmark, from cell to cell.
@@ -215,13 +247,31 @@ void DistanceTable::walk(Index cell, std::size_t landmark, Way& way) const {
   }
 }
 
+/// The cells of the way from a point to a landmark, by a shortcut if there is one; empty when there is no way.
+DistanceTable::Way DistanceTable::way_to(std::size_t landmark, const View& from) const {
+  Way way;
+  Index cell = from.cell;
+  if (from.distance[landmark] < from.marched[landmark]) {
+    const std::size_t n = landmarks_.size();
+    const auto length = [&](std::size_t m) { return from.marched[m] + between_[m * n + landmark]; };
+    std::size_t past = 0;
+    for (std::size_t m = 1; m < n; ++m) {
+      if (length(m) < length(past)) past = m;
+    }
+    cell = landmarks_[past];
+    walk(from.cell, past, way);
+    if (way.back() != cell) return {};
+    way.pop_back();
+  }
+  walk(cell, landmark, way);
+  return way.back() == landmarks_[landmark] ? way : Way();
+}
+
 /// The cells of the way from one point past a landmark to the other; empty when there is none.
 DistanceTable::Way DistanceTable::way_past(const View& from, const View& to, std::size_t landmark) const {
-  Way there;
-  Way back;
-  walk(from.cell, landmark, there);
-  walk(to.cell, landmark, back);
-  if (there.back() != landmarks_[landmark] || back.back() != landmarks_[landmark]) return {};
+  Way there = way_to(landmark, from);
+  const Way back = way_to(landmark, to);
+  if (there.empty() || back.empty()) return {};
   there.insert(there.end(), back.rbegin() + 1, back.rend());
   return there;
 }
@@ -246,10 +296,9 @@ double DistanceTable::straying(const Way& way, const std::vector<Way>& known) co
 }
 
 double DistanceTable::upper_bound(const VectorIn& p, const VectorIn& q) const {
-  const View from = look(p);
-  const View to = look(q);
-  if (from.distance.empty() || to.distance.empty()) return kFar;
-  return least_sum(from, to);
+  View from = look(p);
+  View to = look(q);
+  return take_shortcuts(from, to) ? least_sum(from, to) : kFar;
 }
 
 float DistanceTable::least_sum(const View& from, const View& to) const {
@@ -261,9 +310,9 @@ float DistanceTable::least_sum(const View& from, const View& to) const {
 std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const VectorIn& q,
                                                   const StartPathOptions& options) const {
   std::vector<StartPath> paths;
-  const View from = look(p);
-  const View to = look(q);
-  if (from.distance.empty() || to.distance.empty()) return paths;
+  View from = look(p);
+  View to = look(q);
+  if (!take_shortcuts(from, to)) return paths;
   struct Passing {
     float length;
     std::size_t landmark;
@@ -272,7 +321,7 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
   const double near_end = kEndSpacings * spacing_;
   std::vector<Passing> passing;
   const float shortest = least_sum(from, to);
-  if (!(shortest < kFar) || shortest < kClose * spacing_) return paths;
+  if (shortest < kClose * spacing_) return paths;
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     const double a = from.distance[l];
     const double b = to.distance[l];

@@ -49,8 +49,10 @@ class DistanceTable {
   void fill(const Surface& surface, const Context& context);
   [[nodiscard]] Index nearest_cell(const VectorIn& x) const;
   [[nodiscard]] View look(const VectorIn& x) const;
+  [[nodiscard]] bool take_shortcuts(View& from, View& to) const;
   void walk(Index cell, std::size_t landmark, Way& way) const;
   [[nodiscard]] float least_sum(const View& from, const View& to) const;
+  [[nodiscard]] Way way_to(std::size_t landmark, const View& from) const;
   [[nodiscard]] Way way_past(const View& from, const View& to, std::size_t landmark) const;
   [[nodiscard]] double distance_to(const std::vector<Way>& ways, Index i) const;
   [[nodiscard]] double straying(const Way& way, const std::vector<Way>& known) const;
@@ -64,6 +66,7 @@ class DistanceTable {
   std::vector<Index> landmarks_;  // their cells
   // A row a cell: distance to every landmark, in cells' sizes, then its gradient, axis by axis.
   std::vector<float> table_;
+  std::vector<float> between_;             // the distance of each landmark from each, model units
   std::vector<std::uint32_t> first_link_;  // num_cells + 1
   std::vector<std::uint32_t> links_;       // cells on the same sheet around each
 };
