@@ -33,6 +33,8 @@ class CellLevels {
   /// How many sizes are worth trying: the number of cells grows by 2^(d - 1) each time.
   [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
   [[nodiscard]] double size(int level) const;
+  /// True when the size was chosen by how large the box is.
+  [[nodiscard]] bool sized_by_box() const { return cell_ == 0 && !fitted(); }
   /// Where cells are looked for. Empty until prepared.
   [[nodiscard]] const Box& box() const { return box_; }
   /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are

@@ -66,6 +66,10 @@ constexpr Index kMostCellsBeforeWalks = 2'000'000;
 constexpr Index kMostCellsForSheets = 6'000'000;
 /// A part of the box is looked at again where it is smaller by this.
 constexpr double kCloser = 0.7;
+/// Where the surface bends sharply along a path, that is done if it is smaller by this, or the marched way is wrong by
+/// more than that.
+constexpr double kLocal = 0.5;
+constexpr double kMismarched = 0.02;
 
 }  // namespace
 
@@ -92,6 +96,7 @@ struct PathSolver::Impl {
   [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
   [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
                                    std::optional<Starts> first = std::nullopt) const;
+  [[nodiscard]] bool doubted(const PathResult& found, const Starts& starts, int level) const;
   [[nodiscard]] PathResult walk(const PathResult& so_far, const Vector& p, const Vector& q, Corrector& corrector) const;
   [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
@@ -136,7 +141,9 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     const Starts starts = finder.find_by_table(p, q);
     take(starts);
     if (!starts.paths.empty()) {
-      if (corrector.correct(result, starts, false)) return result;
+      if (corrector.correct(result, starts, false)) {
+        return doubted(result, starts, 0) ? look_closer(std::move(result), corrector) : result;
+      }
       if (result.status == Status::ok) by_table = result;
     }
   }
@@ -145,6 +152,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   std::optional<PathResult> best;
   std::optional<Barrier> barrier;
   bool sure = true;
+  bool doubts = false;
   std::optional<PathResult> walked;
   double marched = 0;
   for (int level = 0; level < levels().num_levels(); ++level) {
@@ -187,7 +195,10 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     const bool last = only || second_try || level + 1 == levels().num_levels();
     sure = corrector.correct(result, starts, last) || only;
     marched = starts.paths.front().length;
-    if (!best || detail::is_better(result, *best)) best = result;
+    if (!best || detail::is_better(result, *best)) {
+      best = result;
+      doubts = doubted(result, starts, level);
+    }
     best->seconds = result.seconds;
     if (sure || second_try) break;
   }
@@ -206,7 +217,19 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     best->message = fmt::format(
         "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
   }
-  return levels().resolved() ? *std::move(best) : look_closer(*std::move(best), corrector);
+  return doubts ? look_closer(*std::move(best), corrector) : *std::move(best);
+}
+
+/// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest. Sharp
+/// bends alone are no reason where finer cells for the part of the box that matters would be hardly finer.
+bool PathSolver::Impl::doubted(const PathResult& found, const Starts& starts, int level) const {
+  if (!levels().resolved()) return true;
+  if (found.status != Status::ok) return false;
+  const bool local = detail::box_of_shorter_paths(found.from, found.to, found.length).extent().maxCoeff() <
+                     kLocal * levels().box().extent().maxCoeff();
+  const double marched = starts.paths.front().length;
+  const bool mismarched = std::abs(marched - found.length) > kMismarched * found.length;
+  return (local || mismarched) && finder.bends_sharply(level, found.points);
 }
 
 /// Cells too coarse for the whole box may be fine enough for the part of it that shorter paths can visit: the ellipsoid

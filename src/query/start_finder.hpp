@@ -58,6 +58,8 @@ class StartFinder {
                                    const Vector& q) const {
     return continue_to({std::move(cells), levels_.neighbours(0)}, from_p, q, std::nullopt);
   }
+  /// Does the surface bend within the cells of a level along a curve (d x m), where those were chosen without looking.
+  [[nodiscard]] bool bends_sharply(int level, const Points& curve) const;
   /// The cells of a level, shared unless they are lazy.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;
 
