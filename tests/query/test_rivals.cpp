@@ -310,7 +310,7 @@ TEST(Rivals, CellsTooCoarseForNecksAreLookedThrough) {
   to.col(2) << -0.500627134, -1.133952809, 0.605050883;
   PathSolver solver(kummer);
   Points wide(3, 2);  // other points of the batch, farther out
-  wide << 2, -2, 2, -2, 2, -2;
+  wide << 1.58, -1.58, 1.58, -1.58, 1.58, -1.58;
   solver.expect(wide, 2);
   const std::vector<PathResult> paths = solver.solve_pairs(from, to);
   const double lengths[] = {1.827191, 1.682299, 0.792537};
