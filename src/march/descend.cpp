@@ -20,6 +20,8 @@ namespace {
 constexpr double kStep = 0.5;
 /// A step that lowers the distance by less than this part of its length is not taken: the field is not smooth there.
 constexpr double kLeastDescent = 0.3;
+/// Gradients that turn by more than this (cosine) from step to step say little about the next.
+constexpr double kSmooth = 0.95;
 /// How near the surface the points are kept, in cells.
 constexpr double kNearness = 1e-4;
 
@@ -70,12 +72,13 @@ class Descent {
   }
 
   /// One step of second order: along the gradient as it has turned since the last one (Adams and Bashforth), or, at
-  /// first and where that leads nowhere, along the mean of the gradients at both ends (Heun). False when it does not
-  /// lead down.
+  /// first, where it turned much and where that leads nowhere, along the mean of the gradients at both ends (Heun).
+  /// False when it does not lead down.
   [[nodiscard]] bool follow_gradient(double& below) {
     if (!reading_ || !(reading_->arrival.distance < below)) return false;
     const SmallVector<D> gradient = reading_->arrival.gradient;
-    bool taken = follows_on_ && step_along(1.5 * gradient - 0.5 * last_gradient_, below);
+    const bool smooth = follows_on_ && gradient.dot(last_gradient_) > kSmooth;
+    bool taken = smooth && step_along(1.5 * gradient - 0.5 * last_gradient_, below);
     if (!taken) {
       const std::optional<Reading<D>> ahead = look_along(gradient);
       taken = ahead && step_along(gradient + ahead->arrival.gradient, below);
