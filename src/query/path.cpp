@@ -142,7 +142,9 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     take(starts);
     if (!starts.paths.empty()) {
       if (corrector.correct(result, starts, false)) {
-        return doubted(result, starts, 0) ? look_closer(std::move(result), corrector) : result;
+        if (!levels().resolved()) return look_closer(std::move(result), corrector);
+        // On which side of a spike a way begins no landmark tells.
+        if (!finder.bends_sharply(0, result.points)) return result;
       }
       if (result.status == Status::ok) by_table = result;
     }
