@@ -41,6 +41,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   NewtonResult solve(const PointsIn& start, const Context& context) override {
     kernel_.reset_counters();
     checker_.reset_counters();
+    nonsmooth_ = false;
     context_ = &context;
     scale_ = start.cwiseAbs().maxCoeff();
     const Points path = without_repeats(start);
@@ -376,9 +377,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     decide(outcome, in_domain, result);
   }
 
-  static bool at_rest(Relaxation outcome) {
-    return outcome == Relaxation::converged || outcome == Relaxation::saddle;
-  }
+  static bool at_rest(Relaxation outcome) { return outcome == Relaxation::converged || outcome == Relaxation::saddle; }
 
   // The first conjugate point of a geodesic that is no minimum, and how many there are.
   void find_conjugate(NewtonResult& result) {
@@ -415,6 +414,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     return 4e-16 * scale_ * std::pow(kernel_.degree(), 4) / (shortest * shortest);
   }
 
+  [[nodiscard]] bool bends_within_surface() const {
+    return check_.geodesic_curvature > 0.3 * std::max(check_.curvature, 1 / check_.length) + curvature_noise();
+  }
+
   void decide(Relaxation outcome, bool in_domain, NewtonResult& result) const {
     const bool finite = std::isfinite(result.length) && std::isfinite(result.length_error);
     result.status = Status::not_converged;
@@ -442,7 +445,7 @@ class NewtonDriver : public NewtonSolver::Backend {
                                  : "the tolerance was not met with the elements allowed";
     } else if (check_.corner > CurveChecker<Frame>::kCorner) {
       result.reason = "the curve has a corner: it crosses a crease of the surface";
-    } else if (check_.geodesic_curvature > 0.3 * std::max(check_.curvature, 1 / check_.length) + curvature_noise()) {
+    } else if (bends_within_surface()) {
       result.reason = "the curve bends within the surface: a crease?";
     } else if (!in_domain) {
       result.status = Status::left_domain;
@@ -454,13 +457,17 @@ class NewtonDriver : public NewtonSolver::Backend {
       // Straightening a bend of angle a in a path of length L gains up to a^2 L / 8; where a curve that is no geodesic
       // would come to rest, nobody knows.
       const double gain = check_.turning * check_.turning * check_.length / 8;
-      result.length_error = at_rest(outcome) ? std::max(result.length_error, gain) : std::numeric_limits<double>::infinity();
+      result.length_error =
+          at_rest(outcome) ? std::max(result.length_error, gain) : std::numeric_limits<double>::infinity();
     }
     if (result.status == Status::not_converged && check_.weakest_gradient < 1e-3) {
       result.status = Status::rank_deficient;
       result.reason = "the curve passes close to a point where the Jacobian of F loses rank";
     }
-    if (result.status == Status::rank_deficient) {
+    // The second variation of a curve over a crease says nothing.
+    const bool creased = result.status == Status::not_converged &&
+                         (nonsmooth_ || check_.corner > CurveChecker<Frame>::kCorner || bends_within_surface());
+    if (creased || result.status == Status::rank_deficient) {
       result.locally_shortest = false;
       result.index.reset();
     }

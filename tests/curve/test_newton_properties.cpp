@@ -234,6 +234,8 @@ TEST(NewtonProperties, ACreaseIsNotPassedOffAsSmooth) {
     EXPECT_NE(path.status, Status::ok);
     EXPECT_FALSE(path.reason.empty());
     EXPECT_LE(std::abs(path.length - truth), path.length_error);
+    EXPECT_FALSE(path.locally_shortest);  // the second variation over an edge says nothing
+    EXPECT_FALSE(path.index.has_value());
   }
 }
 
