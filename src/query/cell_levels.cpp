@@ -124,6 +124,15 @@ std::shared_ptr<const AnyNeighbourIndex> CellLevels::neighbours(int level) {
   return slot.neighbours;
 }
 
+std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
+  if (surface_.dim() != 3 || surface_.codim() != 1 || lazy() || fitted() || cell_ > 0) return nullptr;
+  const auto index = std::static_pointer_cast<const NeighbourIndex<3>>(neighbours(level));
+  const std::lock_guard lock(mutex_);
+  Complete& slot = complete_.at(static_cast<std::size_t>(level));
+  if (!slot.sharp_bends) slot.sharp_bends = std::make_shared<SharpBends>(*slot.cells, *index);
+  return slot.sharp_bends;
+}
+
 Vector CellLevels::on_surface(const VectorIn& x, const char* name) const {
   const ProjectionResult projected = project_to_surface(surface_, x);
   if (!projected.converged) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "march/march_over.hpp"
+#include "query/sharp_bends.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
@@ -33,8 +34,6 @@ class CellLevels {
   /// How many sizes are worth trying: the number of cells grows by 2^(d - 1) each time.
   [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
   [[nodiscard]] double size(int level) const;
-  /// True when the size was chosen by how large the box is.
-  [[nodiscard]] bool sized_by_box() const { return cell_ == 0 && !fitted(); }
   /// Where cells are looked for. Empty until prepared.
   [[nodiscard]] const Box& box() const { return box_; }
   /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are
@@ -42,6 +41,9 @@ class CellLevels {
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
   /// Who neighbours whom in the complete cells of a level, made when first asked for; null for lazy ones.
   [[nodiscard]] std::shared_ptr<const AnyNeighbourIndex> neighbours(int level);
+  /// Where the surface bends within the complete cells of a level, made when first asked for; null where that is not
+  /// looked at: lazy cells, cells of a given size or for samples, and other than surfaces in R^3.
+  [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);
   /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
   [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;
 
@@ -69,6 +71,7 @@ class CellLevels {
   struct Complete {
     std::shared_ptr<SurfaceCells> cells;
     std::shared_ptr<const AnyNeighbourIndex> neighbours;
+    std::shared_ptr<const SharpBends> sharp_bends;
   };
   std::vector<Complete> complete_;  // a level each, null until asked for
 };

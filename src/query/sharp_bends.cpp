@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 #include "cells/normal_turn.hpp"
 
@@ -22,30 +20,36 @@ constexpr double kShortestArm = 0.7;
 
 }  // namespace
 
-bool bends_sharply(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours, const PointsIn& curve) {
+SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours)
+    : cells_(cells), near_(static_cast<std::size_t>(cells.num_cells()), 0) {
   const double h = cells.grid().size();
-  // Where all normals are within half the least turn that counts of one of them, no two differ by as much.
-  const double gentle = std::cos(0.5 * kSharp * kShortestArm);
+  const double gentle = std::cos(kSharp * kShortestArm);
+  std::vector<Index> around;
+  const auto is_sharp = [&](Index i) {
+    return std::ranges::any_of(around, [&](Index j) {
+      if (cells.normals(i).col(0).dot(cells.normals(j).col(0)) >= gentle) return false;
+      const double apart = (cells.point(i) - cells.point(j)).norm() / h;
+      const double turn = normal_turn(cells, i, j);
+      return apart > kNearest && apart < kFarthest && turn > kSharp * std::max(apart, kShortestArm) && turn < kMostTurn;
+    });
+  };
+  for (Index i = 0; i < cells.num_cells(); ++i) {
+    if (!cells.valid(i)) continue;
+    neighbours.around(i, around);
+    if (!is_sharp(i)) continue;
+    for (const Index j : around) near_[static_cast<std::size_t>(j)] = 1;
+  }
+}
+
+bool SharpBends::along(const PointsIn& curve) const {
   std::vector<std::int32_t> cell(3);
   std::vector<std::int32_t> last;
-  std::vector<Index> around;
   for (Index m = 0; m < curve.cols(); ++m) {
-    cells.grid().cell_of(curve.col(m), cell);
+    cells_.grid().cell_of(curve.col(m), cell);
     if (cell == last) continue;
     last = cell;
-    neighbours.around(cell.data(), around);
-    const auto like_first = [&](Index i) {
-      return cells.normals(i).col(0).dot(cells.normals(around[0]).col(0)) > gentle;
-    };
-    if (std::ranges::all_of(around, like_first)) continue;
-    for (std::size_t a = 0; a < around.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        const double apart = (cells.point(around[a]) - cells.point(around[b])).norm() / h;
-        if (apart < kNearest || apart > kFarthest) continue;
-        const double turn = normal_turn(cells, around[a], around[b]);
-        if (turn > kSharp * std::max(apart, kShortestArm) && turn < kMostTurn) return true;
-      }
-    }
+    const Index i = cells_.grid().find(cell);
+    if (i != CellGrid::kNone && near_[static_cast<std::size_t>(i)] != 0) return true;
   }
   return false;
 }

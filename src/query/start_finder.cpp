@@ -10,7 +10,6 @@
 #include "query/find_ways.hpp"
 #include "query/march_check.hpp"
 #include "query/normal_turns.hpp"
-#include "query/sharp_bends.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
@@ -65,9 +64,8 @@ std::shared_ptr<SurfaceCells> StartFinder::cells(int level, const PointsIn& seed
 }
 
 bool StartFinder::bends_sharply(int level, const Points& curve) const {
-  if (surface_.dim() != 3 || surface_.codim() != 1 || levels_.lazy() || !levels_.sized_by_box()) return false;
-  const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, Points(3, 0));
-  return detail::bends_sharply(*cells, static_cast<const NeighbourIndex<3>&>(*levels_.neighbours(level)), curve);
+  const std::shared_ptr<const SharpBends> bends = levels_.sharp_bends(level);
+  return bends && bends->along(curve);
 }
 
 void StartFinder::tabulate(Index num_pairs) {
