@@ -13,7 +13,7 @@ namespace taut::detail {
 /// sheets back to back do not count.
 class SharpBends {
  public:
-  /// Looks at all cells, 0.2 microseconds each. `neighbours`: of these cells, which must stay.
+  /// Looks at all cells, which must stay. `neighbours`: theirs.
   SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours);
 
   /// Is there such a place next to a curve (3 x m) on the surface.
