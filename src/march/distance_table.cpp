@@ -158,8 +158,9 @@ void DistanceTable::fill(const Surface& surface, const Context& context) {
 }
 
 std::size_t DistanceTable::bytes() const {
-  return table_.capacity() * sizeof(float) + (links_.capacity() + first_link_.capacity()) * sizeof(std::uint32_t) +
-         landmarks_.capacity() * sizeof(Index) + cells_.bytes();
+  return (table_.capacity() + between_.capacity()) * sizeof(float) +
+         (links_.capacity() + first_link_.capacity()) * sizeof(std::uint32_t) + landmarks_.capacity() * sizeof(Index) +
+         cells_.bytes();
 }
 
 /// The valid cell around x whose point is nearest.
