@@ -13,7 +13,6 @@
 #include "query/stopwatch.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
-#include "taut/march/descend.hpp"
 #include "taut/march/march.hpp"
 
 namespace taut::detail {
