@@ -160,14 +160,18 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
   std::vector<PathCandidate> rough;
   std::vector<StartPath> failed;
   Hope hope;
-  double bound = std::numeric_limits<double>::infinity();  // the shortest is no longer than this
+  // The shortest is no longer than this: by those that were kept, for one may be taken for a worse known one.
+  const auto bound = [&] {
+    double least = std::numeric_limits<double>::infinity();
+    for (const PathCandidate& candidate : rough) least = std::min(least, candidate.length + candidate.length_error);
+    return least;
+  };
   const auto correct_roughly = [&](const StartPath& start) {
     const NewtonResult geodesic = rough_->solve(start.points, context_);
     if (!is_geodesic(geodesic)) return false;
     hope.found(start, geodesic.length);
     PathCandidate candidate = candidate_of(geodesic);
     candidate.length_error = std::max(candidate.length_error, kLeastRoughError * candidate.length);
-    bound = std::min(bound, candidate.length + candidate.length_error);
     add_candidate(rough, std::move(candidate));
     return true;
   };
@@ -175,15 +179,16 @@ std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& start
     if (hope.is_lost(start)) break;
     if (!correct_roughly(start)) failed.push_back(start);
   }
-  for (const StartPath& start : splices(surface_, rough, (1 + kSpliced) * bound)) (void)correct_roughly(start);
+  for (const StartPath& start : splices(surface_, rough, (1 + kSpliced) * bound())) (void)correct_roughly(start);
   std::vector<StartPath> result;
+  const double longest = bound();
   for (PathCandidate& candidate : rough) {
-    if (candidate.length - candidate.length_error > bound) continue;
+    if (candidate.length - candidate.length_error > longest) continue;
     result.push_back({candidate.length, std::move(candidate.points)});
   }
   // What did not converge roughly is tried again as it is, unless it would be longer anyway.
   for (StartPath& start : failed) {
-    if (start.length <= (1 + kMarchError) * bound) result.push_back(std::move(start));
+    if (start.length <= (1 + kMarchError) * longest) result.push_back(std::move(start));
   }
   return result;
 }
