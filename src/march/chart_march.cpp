@@ -4,11 +4,10 @@
 #include <bit>
 #include <cmath>
 
+#include "march/cell_map.hpp"
 #include "march/dimensions.hpp"
-#include "march/edge.hpp"
 #include "march/field_reader.hpp"
-#include "march/lanes.hpp"
-#include "march/tangent_frame.hpp"
+#include "march/start.hpp"
 
 namespace taut::detail {
 namespace {
@@ -21,75 +20,11 @@ constexpr float kBucketsPerCell = 16;
 constexpr float kWorthwhile = 0.25F;
 /// Square of what no offer can be better than.
 constexpr float kNoOffers = -kInfinity;
-
-SurfacePoint point_of(const SurfaceCells& cells, Index i) { return {cells.point(i).data(), cells.normals(i).data()}; }
-
-Eigen::Vector2d unit(const Eigen::Vector2d& v) {
-  const double norm = v.norm();
-  return norm > 0 ? Eigen::Vector2d(v / norm) : v;
-}
-
-Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v(1), v(0)}; }
+/// Cells are settled so far past the end, in cells, that all are there that its distance depends on.
+constexpr float kPastEnd = 1;
+constexpr Index kVisitsPerCheck = 4096;  // about a millisecond
 
 }  // namespace
-
-SurfaceCharts::SurfaceCharts(const SurfaceCells& cells, const std::vector<std::uint32_t>& first_link,
-                             const std::vector<std::uint32_t>& links)
-    : cells_(cells), axes_(static_cast<std::size_t>(2 * cells.dim() * cells.num_cells())), first_link_(1, 0) {
-  with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() {
-    const Index d = cells.dim();
-    const Index k = cells.codim();
-    TangentFrame<D, K> frame(d, k);
-    for (Index i = 0; i < cells.num_cells(); ++i) {
-      if (!cells.valid(i)) continue;
-      frame.set(cells.normals(i).data());
-      for (Index axis = 0; axis < 2; ++axis) {
-        const SmallVector<D> lifted = frame.lift(SmallVector<D>(SmallVector<D>::Unit(d, k + axis)));
-        std::copy_n(lifted.data(), d, axes_.data() + (2 * i + axis) * d);
-      }
-    }
-    Edge<D> edge;
-    const auto none = static_cast<std::uint32_t>(cells.num_cells());
-    for (Index x = 0; x < cells.num_cells(); ++x) {
-      const std::size_t first = first_link[static_cast<std::size_t>(x)];
-      const std::size_t count = first_link[static_cast<std::size_t>(x) + 1] - first;
-      const std::size_t in_lanes = (count + kLanes - 1) / kLanes * kLanes;
-      most_links_ = std::max(most_links_, in_lanes);
-      linked_.resize(linked_.size() + in_lanes, none);
-      numbers_.resize(kNumbers * linked_.size(), 0);
-      std::uint32_t* linked = linked_.data() + first_link_.back();
-      float* numbers = numbers_.data() + kNumbers * first_link_.back();
-      first_link_.push_back(static_cast<std::uint32_t>(linked_.size()));
-      for (std::size_t l = 0; l < count; ++l) {
-        const auto y = static_cast<Index>(links[first + l]);
-        make_edge<D, K>(point_of(cells, y), point_of(cells, x), d, k, edge);
-        // Parallel transport: the tangent of the edge at y becomes its tangent at x, what is across stays.
-        const Eigen::Vector2d there = unit(axes(y).transpose() * edge.chord);
-        const Eigen::Vector2d here = unit(axes(x).transpose() * edge.chord);
-        const double handed = std::copysign(1.0, (axes(x).transpose() * axes(y)).determinant());
-        const double length = edge.length / cell_size();
-        const Eigen::Vector2d position = -length * here;
-        const Eigen::Matrix2d turn =
-            here * there.transpose() + handed * quarter_turn(here) * quarter_turn(there).transpose();
-        const double all[kNumbers] = {length, position(0), position(1), turn(0, 0), turn(0, 1), turn(1, 0), turn(1, 1)};
-        linked[l] = static_cast<std::uint32_t>(y);
-        for (std::size_t n = 0; n < kNumbers; ++n) numbers[n * in_lanes + l] = static_cast<float>(all[n]);
-      }
-    }
-  });
-}
-
-std::optional<std::pair<double, Eigen::Vector2d>> SurfaceCharts::edge(Index source, Index x, double radius) const {
-  return with_dimensions(
-      cells_.dim(), cells_.codim(), [&]<int D, int K>() -> std::optional<std::pair<double, Eigen::Vector2d>> {
-        Edge<D> edge;
-        if (!make_edge<D, K>(point_of(cells_, source), point_of(cells_, x), cells_.dim(), cells_.codim(), edge) ||
-            edge.chord.norm() > radius * cell_size()) {
-          return std::nullopt;
-        }
-        return std::pair(edge.length / cell_size(), unit(axes(x).transpose() * edge.chord));
-      });
-}
 
 ChartMarch::ChartMarch(const SurfaceCharts& charts)
     : charts_(charts),
@@ -100,13 +35,20 @@ ChartMarch::ChartMarch(const SurfaceCharts& charts)
   }
 }
 
-void ChartMarch::run(Index source) {
+void ChartMarch::run(const SurfacePoint& source, std::span<const Index> around_source, const Context& context,
+                     const ChartGoal& goal) {
   source_ = source;
+  goal_ = goal;
+  reached_ = 0;
+  end_ = kInfinity;
   std::fill(state_.begin(), state_.end(), Cell{kInfinity, {0, 0}, kInfinity});
   state_.back().offered2 = kNoOffers;
   front_.clear();
-  offer_direct(source);
-  while (!front_.empty()) visit(front_.pop());
+  for (const Index i : around_source) offer_direct(i);
+  for (Index visits = 0; !front_.empty() && reached_ <= end_ + kPastEnd; ++visits) {
+    if (visits % kVisitsPerCheck == 0) context.check_cancelled();
+    visit(front_.pop());
+  }
 }
 
 /// Settles cell i and tells its neighbours, unless it has to wait, or cannot be reached after all.
@@ -120,13 +62,13 @@ void ChartMarch::visit(Index i) {
     for (std::size_t j = 0; j < links.count; ++j) {
       if (distance_[j] == kInfinity) offer_direct(links.cell[j]);
     }
-    settle(here, {static_cast<float>(length), direction.cast<float>(), true, 0}, links);
+    settle(i, {length, direction, true, 0}, links);
     return;
   }
   const std::optional<Arrival<2, float>> arrival = solve(links);
   if (!arrival) return;
   if (arrival->enclosed || waited) {
-    settle(here, *arrival, links);
+    settle(i, *arrival, links);
   } else {
     here.offered2 = kNoOffers;
     front_.set(i, arrival->distance);
@@ -139,7 +81,7 @@ void ChartMarch::offer_direct(Index j) {
   if (j == charts_.num_cells() || there.offered2 == kNoOffers) return;
   const auto direct = charts_.edge(source_, j, kDirectCells);
   if (!direct) return;
-  front_.set(j, static_cast<float>(direct->first));
+  front_.set(j, direct->first);
   there.offered2 = kNoOffers;
 }
 
@@ -155,11 +97,12 @@ void ChartMarch::gather(const ChartLinks& links) {
     transpose(u, there_x, there_y, offered2);
     const Floats x = load(links.position[0] + j);
     const Floats y = load(links.position[1] + j);
-    const Floats length = load(links.length + j);
-    const Floats gx = load(links.turn[0][0] + j) * there_x + load(links.turn[0][1] + j) * there_y;
-    const Floats gy = load(links.turn[1][0] + j) * there_x + load(links.turn[1][1] + j) * there_y;
+    const Floats cosine = load(links.cosine + j);
+    const Floats sine = load(links.sine + j);
+    const Floats gx = cosine * there_x - sine * there_y;
+    const Floats gy = sine * there_x + cosine * there_y;
     const Floats along = -(gx * x + gy * y);
-    nearest_.take(u * (u + 2 * along) + length * length, j);  // as circular_estimate2
+    nearest_.take(u * (u + 2 * along) + (x * x + y * y), j);  // as circular_estimate2
     store(u, &distance_[j]);
     store(gx, &gradient_x_[j]);
     store(gy, &gradient_y_[j]);
@@ -171,13 +114,8 @@ void ChartMarch::gather(const ChartLinks& links) {
 
 /// All but its estimate.
 Neighbour<2, float> ChartMarch::neighbour(const ChartLinks& links, std::size_t j) const {
-  return {{links.position[0][j], links.position[1][j]},
-          {gradient_x_[j], gradient_y_[j]},
-          distance_[j],
-          links.length[j],
-          along_[j],
-          0,
-          0};
+  const Eigen::Vector2f position(links.position[0][j], links.position[1][j]);
+  return {position, {gradient_x_[j], gradient_y_[j]}, distance_[j], position.norm(), along_[j], 0, 0};
 }
 
 /// The ray through x passes between two neighbours, one on either side: of those on each side the one whose ray passes
@@ -193,13 +131,15 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
   Least least[2];  // with the ray to the left and to the right of x
   for (std::size_t j = 0; j < links.count; j += kLanes) {
     const Floats along = load(&along_[j]);
-    const Floats length = load(links.length + j);
+    const Floats x = load(links.position[0] + j);
+    const Floats y = load(links.position[1] + j);
+    const Floats length = sqrt(x * x + y * y);
     const Floats miss = load(&miss_[j]);
     // Zero, as their gradient, for those not settled.
     const Floats cosine = load(&gradient_x_[j]) * branch_x + load(&gradient_y_[j]) * branch_y;
     // Those beside or ahead of x only where nobody is behind.
     const Floats penalty = along < kBeside * length ? 4 * length : all_lanes(0);
-    Floats measure = (miss < 0 ? -miss : miss) + penalty;
+    Floats measure = abs(miss) + penalty;
     measure = cosine < kBranch ? never : measure;
     measure = along < -kBeside * length ? never : measure;
     least[0].take(miss < 0 ? never : measure, j);
@@ -223,15 +163,18 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
 }
 
 /// The cell offers its neighbours what it makes of the distances there.
-void ChartMarch::settle(Cell& here, const Arrival<2, float>& arrival, const ChartLinks& links) {
+void ChartMarch::settle(Index i, const Arrival<2, float>& arrival, const ChartLinks& links) {
+  Cell& here = cell(i);
   here = {arrival.distance, {arrival.gradient(0), arrival.gradient(1)}, kNoOffers};
+  reached_ = std::max(reached_, here.distance);
+  if (goal_.end) watch(i, here.distance);
   const Floats u = all_lanes(here.distance);
   const Floats gx = all_lanes(here.gradient[0]);
   const Floats gy = all_lanes(here.gradient[1]);
   for (std::size_t j = 0; j < links.count; j += kLanes) {
-    const Floats length = load(links.length + j);
-    const Floats along = gx * load(links.position[0] + j) + gy * load(links.position[1] + j);
-    Floats estimate2 = u * (u + 2 * along) + length * length;  // as circular_estimate2
+    const Floats x = load(links.position[0] + j);
+    const Floats y = load(links.position[1] + j);
+    Floats estimate2 = u * (u + 2 * (gx * x + gy * y)) + (x * x + y * y);  // as circular_estimate2
     estimate2 = estimate2 > 0 ? estimate2 : all_lanes(0);
     // Better by kWorthwhile, squared. What came in since they were gathered is the source's own offers.
     unsigned better = bits(estimate2 < load(&offered2_[j]) - 2 * kWorthwhile * u);
@@ -239,11 +182,57 @@ void ChartMarch::settle(Cell& here, const Arrival<2, float>& arrival, const Char
       const auto l = static_cast<std::size_t>(std::countr_zero(better));
       const Index j_there = links.cell[j + l];
       Cell& there = cell(j_there);
-      if (there.offered2 == kNoOffers) continue;
+      const float estimate = std::sqrt(estimate2[l]);
+      if (there.offered2 == kNoOffers || leads_astray(j_there, estimate)) continue;
       there.offered2 = estimate2[l];
-      front_.set(j_there, std::sqrt(estimate2[l]));
+      front_.set(j_there, estimate);
     }
   }
+}
+
+/// Cell i is settled: by it, the end may be nearer than was known.
+void ChartMarch::watch(Index i, float distance) {
+  if (std::ranges::find(goal_.around_end, i) == goal_.around_end.end()) return;
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  if (const auto last = charts_.edge(*goal_.end, i, kAnywhere)) end_ = std::min(end_, distance + last->first);
+}
+
+/// Is a path through cell i, that far from the source, too long before it reaches the end.
+bool ChartMarch::leads_astray(Index i, float distance) const {
+  if (!(goal_.longest < std::numeric_limits<double>::infinity())) return false;
+  const Eigen::Map<const Vector> end(goal_.end->x, charts_.cells().dim());
+  return distance + (charts_.cells().point(i) - end).norm() / charts_.cell_size() > goal_.longest;
+}
+
+void march_in_charts(const MarchTask& task, const SurfaceCharts& charts, DistanceField& field) {
+  const SurfaceCells& cells = charts.cells();
+  const double h = cells.grid().size();
+  const SurfacePoint source{field.sources.data(), field.source_normals.data()};
+  ChartGoal goal;
+  std::vector<Index> around_end;
+  if (task.options.target) {
+    goal.end = SurfacePoint{task.options.target->data(), task.target_normals.data()};
+    around_end = cells_around(cells, *task.options.target);
+    goal.around_end = around_end;
+    goal.longest = task.options.longest / h;
+  }
+  ChartMarch march(charts);
+  march.run(source, cells_around_source(cells, field.sources.col(0)), task.context, goal);
+  const Index n = cells.num_cells();
+  field.distance.resize(n);
+  field.gradient.setZero(cells.dim(), n);
+  field.nearest_source.assign(static_cast<std::size_t>(n), -1);
+  for (Index i = 0; i < n; ++i) {
+    field.distance(i) = h * static_cast<double>(march.distance(i));
+    if (!(march.distance(i) < kInfinity)) continue;
+    ++field.num_reached;
+    field.nearest_source[static_cast<std::size_t>(i)] = 0;
+    field.gradient.col(i) = (charts.axes(i) * march.gradient(i)).cast<double>();
+  }
+  if (!task.options.target) return;
+  field.target_distance = with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() {
+    return FieldReader<D, K>(cells, field, task.map).distance(*goal.end);
+  });
 }
 
 }  // namespace taut::detail

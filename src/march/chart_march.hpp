@@ -1,76 +1,38 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 #include <limits>
 #include <optional>
-#include <utility>
+#include <span>
 #include <vector>
 
 #include "march/arrival.hpp"
 #include "march/bucket_front.hpp"
 #include "march/lanes.hpp"
-#include "taut/cells/surface_cells.hpp"
+#include "march/methods.hpp"
+#include "march/surface_charts.hpp"
 
 namespace taut::detail {
 
-/// The edges from the cells y around a cell x, unrolled into the chart of x: entry j of each is edge j. In whole lanes,
-/// filled up with edges from a cell that no march settles.
-struct ChartLinks {
-  std::size_t count;
-  const std::uint32_t* cell;  ///< y
-  const float* length;        ///< geodesic distance of x and y, in cells
-  const float* position[2];   ///< z: where y lies, x is at 0
-  const float* turn[2][2];    ///< carries tangent vectors from the chart of y to that of x, along the edge
+/// How far a march goes; by default, everywhere.
+struct ChartGoal {
+  /// Until nothing shorter comes to `end` by any of the cells around it.
+  std::optional<SurfacePoint> end;
+  std::span<const Index> around_end;
+  /// Cells are left out that no path to `end` of at most this length, in cells, leads through.
+  double longest = std::numeric_limits<double>::infinity();
 };
 
-/// Orthonormal charts of the tangent planes at the valid cells of a surface (d - k = 2), with all edges between
-/// neighbours unrolled: what many marches over the same cells share. 32 bytes an edge, in
-/// single precision: far below the error of the march.
-class SurfaceCharts {
- public:
-  /// `links`: the cells that an edge joins to cell i, from first_link[i] to first_link[i + 1]. Keeps a reference to the
-  /// cells.
-  SurfaceCharts(const SurfaceCells& cells, const std::vector<std::uint32_t>& first_link,
-                const std::vector<std::uint32_t>& links);
-
-  [[nodiscard]] Index num_cells() const { return cells_.num_cells(); }
-  /// The largest number of links of a cell, in whole lanes.
-  [[nodiscard]] std::size_t most_links() const { return most_links_; }
-  [[nodiscard]] double cell_size() const { return cells_.grid().size(); }
-  [[nodiscard]] ChartLinks links(Index i) const {
-    const std::size_t first = first_link_[static_cast<std::size_t>(i)];
-    const std::size_t n = first_link_[static_cast<std::size_t>(i) + 1] - first;
-    const float* at = numbers_.data() + kNumbers * first;
-    return {n, linked_.data() + first, at, {at + n, at + 2 * n}, {{at + 3 * n, at + 4 * n}, {at + 5 * n, at + 6 * n}}};
-  }
-  /// The edge from cell `source` to cell x: its length, in cells, and its unit direction in the chart of x. Empty when
-  /// no edge joins them or the chord is longer than `radius` cells.
-  [[nodiscard]] std::optional<std::pair<double, Eigen::Vector2d>> edge(Index source, Index x, double radius) const;
-  /// d x 2, orthonormal: the axes of a chart.
-  [[nodiscard]] Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 2>> axes(Index i) const {
-    return {axes_.data() + 2 * cells_.dim() * i, cells_.dim(), 2};
-  }
-
- private:
-  static constexpr std::size_t kNumbers = 7;  // of a link
-
-  const SurfaceCells& cells_;
-  std::vector<double> axes_;
-  std::vector<std::uint32_t> first_link_;
-  std::vector<std::uint32_t> linked_;
-  std::vector<float> numbers_;  // each number of all links of a cell, one after the other
-  std::size_t most_links_ = 0;
-};
-
-/// The convergent march from one cell, in charts: the same steps as ConvergentMarch, in the plane. About twice as
-/// fast where the charts are there already. One a thread.
+/// The convergent march from one point, in charts: the same steps as ConvergentMarch, in the plane, in single precision
+/// and about three times as fast. One a thread.
 class ChartMarch {
  public:
   explicit ChartMarch(const SurfaceCharts& charts);
 
-  /// Distances from the point of cell `source` to those of all cells, in cells' sizes.
-  void run(Index source);
+  /// Distances, in cells' sizes, from a surface point to the points of the cells. `around_source`: the valid cells of
+  /// the block around it.
+  void run(const SurfacePoint& source, std::span<const Index> around_source, const Context& context,
+           const ChartGoal& goal = {});
 
   /// Infinity where the march did not come.
   [[nodiscard]] float distance(Index i) const { return cell(i).distance; }
@@ -92,10 +54,15 @@ class ChartMarch {
   void gather(const ChartLinks& links);
   [[nodiscard]] Neighbour<2, float> neighbour(const ChartLinks& links, std::size_t j) const;
   [[nodiscard]] std::optional<Arrival<2, float>> solve(const ChartLinks& links);
-  void settle(Cell& here, const Arrival<2, float>& arrival, const ChartLinks& links);
+  void settle(Index i, const Arrival<2, float>& arrival, const ChartLinks& links);
+  void watch(Index i, float distance);
+  [[nodiscard]] bool leads_astray(Index i, float distance) const;
 
   const SurfaceCharts& charts_;
-  Index source_ = 0;
+  SurfacePoint source_{};
+  ChartGoal goal_;
+  float reached_ = 0;  // the largest distance settled
+  float end_ = 0;      // of the end, an upper bound
   BucketFront front_;
   std::vector<Cell> state_;  // of the cells, and of one that is never settled
   // The neighbours of the cell being visited, settled or not, their gradients in its chart: entry j for link j.
@@ -105,5 +72,8 @@ class ChartMarch {
   Least nearest_;             // the least square of an estimate of the cell's distance
   std::vector<Neighbour<2, float>> one_by_one_;
 };
+
+/// The field of a task with one source and no radius.
+void march_in_charts(const MarchTask& task, const SurfaceCharts& charts, DistanceField& field);
 
 }  // namespace taut::detail

@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "march/arrival.hpp"
+#include "march/cell_map.hpp"
 #include "march/dimensions.hpp"
 #include "march/field_reader.hpp"
 #include "march/growing_field.hpp"
-#include "march/march_over.hpp"
 #include "march/methods.hpp"
-#include "march/neighbour_index.hpp"
 #include "march/start.hpp"
 #include "march/target_watch.hpp"
 
@@ -34,7 +33,7 @@ class ConvergentMarch {
         target_(task, field),
         solver_(d_, k_),
         frame_(d_, k_),
-        neighbours_(static_cast<const NeighbourIndex<D>*>(task.neighbours)),
+        neighbours_(task.map == nullptr ? nullptr : static_cast<const NeighbourIndex<D>*>(task.map->neighbours.get())),
         flags_(static_cast<std::size_t>(cells_.num_cells()), 0) {
     if (neighbours_ == nullptr) neighbours_ = &own_neighbours_.emplace(cells_);
     for (Index s = 0; s < field.sources.cols(); ++s) {
@@ -168,12 +167,6 @@ class ConvergentMarch {
 };
 
 }  // namespace
-
-std::shared_ptr<const AnyNeighbourIndex> index_neighbours(const SurfaceCells& cells) {
-  return with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() -> std::shared_ptr<const AnyNeighbourIndex> {
-    return std::make_shared<const NeighbourIndex<D>>(cells);
-  });
-}
 
 void march_convergent(const MarchTask& task, DistanceField& field) {
   with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),

@@ -30,14 +30,13 @@ constexpr double kNearness = 1e-4;
 template <int D, int K>
 class Descent {
  public:
-  Descent(const Surface& surface, const SurfaceCells& cells, const DistanceField& field,
-          const AnyNeighbourIndex* neighbours)
+  Descent(const Surface& surface, const SurfaceCells& cells, const DistanceField& field, const CellMap* map)
       : cells_(cells),
         field_(field),
         evaluator_(surface.make_evaluator()),
         d_(surface.dim()),
         k_(surface.codim()),
-        reader_(cells, field, neighbours) {}
+        reader_(cells, field, map) {}
 
   /// From the target to the source, d x m; empty when there is no way down.
   [[nodiscard]] Points run(const VectorIn& target, const VectorIn& target_normals) {
@@ -148,17 +147,16 @@ class Descent {
 
 }  // namespace
 
-Points descend_over(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
-                    const DistanceField& field, const VectorIn& target) {
+Points descend_over(const Surface& surface, const SurfaceCells& cells, const CellMap* map, const DistanceField& field,
+                    const VectorIn& target) {
   if (target.size() != surface.dim() || !target.allFinite()) {
     throw InvalidArgument("descend: the target must be a finite point in dimension " + std::to_string(surface.dim()));
   }
   const Vector normals = normals_at(surface, target).col(0);
   if (!normals.allFinite()) return Points(surface.dim(), 0);
   Points down;
-  with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
-    down = Descent<D, K>(surface, cells, field, neighbours).run(target, normals);
-  });
+  with_dimensions(surface.dim(), surface.codim(),
+                  [&]<int D, int K>() { down = Descent<D, K>(surface, cells, field, map).run(target, normals); });
   return down.rowwise().reverse();
 }
 

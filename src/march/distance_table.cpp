@@ -10,6 +10,7 @@
 #include "cells/normal_turn.hpp"
 #include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
+#include "march/cell_map.hpp"
 #include "march/chart_march.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
@@ -116,8 +117,8 @@ void DistanceTable::link_cells() {
 void DistanceTable::fill(const Surface& surface, const Context& context) {
   const auto d = static_cast<std::size_t>(cells_.dim());
   const auto num_cells = static_cast<std::size_t>(cells_.num_cells());
-  std::optional<detail::SurfaceCharts> charts;
-  if (cells_.dim() - cells_.codim() == 2) charts.emplace(cells_, first_link_, links_);
+  const std::shared_ptr<const detail::CellMap> map = detail::map_cells(cells_, context);
+  const detail::SurfaceCharts* charts = map->charts.get();
   Context inner = context;
   inner.progress = nullptr;
   std::mutex progress;
@@ -128,21 +129,21 @@ void DistanceTable::fill(const Surface& surface, const Context& context) {
     std::vector<float> columns(count * num_cells * (d + 1));
     float* to = columns.data();
     std::optional<detail::ChartMarch> chart_march;
-    if (charts) chart_march.emplace(*charts);
+    if (charts != nullptr) chart_march.emplace(*charts);
     for (Index l = first; l < last; ++l) {
       const Index landmark = landmarks_[static_cast<std::size_t>(l)];
       DistanceField field;
-      if (charts) {
-        context.check_cancelled();
-        chart_march->run(landmark);
+      if (chart_march) {
+        const detail::SurfacePoint source{cells_.point(landmark).data(), cells_.normals(landmark).data()};
+        chart_march->run(source, std::span(&landmark, 1), context);
       } else {
         field = march(surface, cells_, cells_.point(landmark), {}, inner);
       }
       for (Index i = 0; i < cells_.num_cells(); ++i, to += d + 1) {
-        to[0] = charts ? chart_march->distance(i) : static_cast<float>(field.distance(i) / cells_.grid().size());
+        to[0] = chart_march ? chart_march->distance(i) : static_cast<float>(field.distance(i) / cells_.grid().size());
         Eigen::Map<Eigen::VectorXf> gradient(to + 1, cells_.dim());
-        if (charts) {
-          gradient.noalias() = charts->axes(i).cast<float>() * chart_march->gradient(i);
+        if (chart_march) {
+          gradient.noalias() = charts->axes(i) * chart_march->gradient(i);
         } else {
           gradient = field.gradient.col(i).cast<float>();
         }

@@ -43,17 +43,17 @@ struct Reading {
   Index direct_source = -1;
 };
 
-/// Reads a field, finished or still growing, at any surface point. `neighbours`: of complete cells, where they are
-/// known.
+/// Reads a field, finished or still growing, at any surface point. `map`: of the cells, where there is
+/// one.
 template <int D, int K>
 class FieldReader {
  public:
-  FieldReader(const SurfaceCells& cells, const DistanceField& field, const AnyNeighbourIndex* neighbours = nullptr)
+  FieldReader(const SurfaceCells& cells, const DistanceField& field, const CellMap* map = nullptr)
       : cells_(cells),
         field_(field),
         d_(field.sources.rows()),
         k_(field.source_normals.rows() / d_),
-        surroundings_(cells, neighbours),
+        surroundings_(cells, map),
         solver_(d_, k_),
         frame_(d_, k_),
         cell_(static_cast<std::size_t>(d_)) {}

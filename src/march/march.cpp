@@ -1,8 +1,10 @@
 #include "taut/march/march.hpp"
 
+#include <cmath>
 #include <limits>
 #include <string>
 
+#include "march/chart_march.hpp"
 #include "march/march_over.hpp"
 #include "march/methods.hpp"
 #include "march/point_normals.hpp"
@@ -31,7 +33,7 @@ Points checked_normals(const Surface& surface, const PointsIn& x, const std::str
 
 }  // namespace
 
-DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
+DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, const CellMap* map,
                                  const PointsIn& sources, const MarchOptions& options, const Context& context) {
   if (surface.dim() != cells.grid().dim()) throw InvalidArgument("the cells belong to another surface");
   if (surface.dim() > detail::kMaxMarchDim) {
@@ -45,11 +47,17 @@ DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, co
   field.sources = sources;
   field.source_normals = checked_normals(surface, sources, "source");
   field.target_distance = std::numeric_limits<double>::quiet_NaN();
-  detail::MarchTask task{cells, options, context, {}, neighbours};
+  detail::MarchTask task{cells, options, context, {}, map};
   if (options.target) task.target_normals = checked_normals(surface, *options.target, "target").col(0);
   context.check_cancelled();
   switch (options.method) {
-    case MarchMethod::convergent: detail::march_convergent(task, field); break;
+    case MarchMethod::convergent:
+      if (map != nullptr && map->charts && sources.cols() == 1 && std::isinf(options.radius)) {
+        detail::march_in_charts(task, *map->charts, field);
+      } else {
+        detail::march_convergent(task, field);
+      }
+      break;
     case MarchMethod::axis: detail::march_axis(task, field); break;
     case MarchMethod::dijkstra: detail::march_dijkstra(task, field); break;
   }

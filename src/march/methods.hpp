@@ -6,15 +6,15 @@
 
 namespace taut::detail {
 
-struct AnyNeighbourIndex;
+struct CellMap;
 
 /// What every method starts from: a checked request. `field` holds the sources with their normals and nothing else.
 struct MarchTask {
   SurfaceCells& cells;
   const MarchOptions& options;
   const Context& context;
-  Vector target_normals;                          ///< d k: basis of the normal space at the target; empty without one
-  const AnyNeighbourIndex* neighbours = nullptr;  ///< of the cells, where they are complete and it is there already
+  Vector target_normals;         ///< d k: basis of the normal space at the target; empty without one
+  const CellMap* map = nullptr;  ///< of the cells, where there is one
 };
 
 void march_convergent(const MarchTask& task, DistanceField& field);

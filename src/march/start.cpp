@@ -10,13 +10,18 @@
 
 namespace taut::detail {
 
-std::vector<Index> cells_around_source(const SurfaceCells& cells, const VectorIn& source) {
-  std::vector<std::int32_t> cell(static_cast<std::size_t>(source.size()));
-  cells.grid().cell_of(source, cell);
-  Stencil stencil(source.size());
+std::vector<Index> cells_around(const SurfaceCells& cells, const VectorIn& x) {
+  std::vector<std::int32_t> cell(static_cast<std::size_t>(x.size()));
+  cells.grid().cell_of(x, cell);
+  Stencil stencil(x.size());
   const std::span<const Index> block = stencil.block(cells.grid(), cell);
   std::vector<Index> valid;
   std::copy_if(block.begin(), block.end(), std::back_inserter(valid), [&](Index i) { return cells.valid(i); });
+  return valid;
+}
+
+std::vector<Index> cells_around_source(const SurfaceCells& cells, const VectorIn& source) {
+  std::vector<Index> valid = cells_around(cells, source);
   if (valid.empty()) throw InvalidArgument("no cell lies around the source " + describe(source));
   return valid;
 }

@@ -7,7 +7,10 @@
 
 namespace taut::detail {
 
-/// The valid cells of the block around a source. Throws InvalidArgument when there is none.
+/// The valid cells of the block around a point (d).
+[[nodiscard]] std::vector<Index> cells_around(const SurfaceCells& cells, const VectorIn& x);
+
+/// Those around a source. Throws InvalidArgument when there is none.
 [[nodiscard]] std::vector<Index> cells_around_source(const SurfaceCells& cells, const VectorIn& source);
 
 }  // namespace taut::detail

@@ -92,14 +92,13 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, Surroundings<D>& sur
 }
 
 /// Down from the crossing to both ends; empty when one descent fails.
-Points two_descents(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
-                    const DistanceField& from_p, const DistanceField& from_q, const VectorIn& crossing,
-                    const Context& context) {
+Points two_descents(const Surface& surface, const SurfaceCells& cells, const CellMap* map, const DistanceField& from_p,
+                    const DistanceField& from_q, const VectorIn& crossing, const Context& context) {
   Points first;
   Points second;
   parallel_for(context, 0, 2, 1, [&](Index begin, Index end) {
-    if (begin == 0) first = descend_over(surface, cells, neighbours, from_p, crossing);
-    if (end == 2) second = descend_over(surface, cells, neighbours, from_q, crossing);
+    if (begin == 0) first = descend_over(surface, cells, map, from_p, crossing);
+    if (end == 2) second = descend_over(surface, cells, map, from_q, crossing);
   });
   if (first.cols() < 2 || second.cols() < 2) return Points(surface.dim(), 0);
   Points path(surface.dim(), first.cols() + second.cols() - 1);
@@ -111,13 +110,12 @@ Points two_descents(const Surface& surface, const SurfaceCells& cells, const Any
 template <int D, int K>
 class Ways {
  public:
-  Ways(const Surface& surface, const SurfaceCells& cells, const AnyNeighbourIndex* neighbours,
-       const DistanceField& from_p, const DistanceField& from_q, const StartPathOptions& options,
-       const Context& context)
+  Ways(const Surface& surface, const SurfaceCells& cells, const CellMap* map, const DistanceField& from_p,
+       const DistanceField& from_q, const StartPathOptions& options, const Context& context)
       : surface_(surface),
         cells_(cells),
-        neighbours_(neighbours),
-        surroundings_(cells, neighbours),
+        map_(map),
+        surroundings_(cells, map),
         from_p_(from_p),
         from_q_(from_q),
         options_(options),
@@ -164,8 +162,7 @@ class Ways {
       if (paths_[w].length > crossing.length + kNoise * least_) continue;
       if (passes(paths_[w].points, normals_[w], crossing.cell, spread)) return;
     }
-    Points points =
-        two_descents(surface_, cells_, neighbours_, from_p_, from_q_, cells_.point(crossing.cell), context_);
+    Points points = two_descents(surface_, cells_, map_, from_p_, from_q_, cells_.point(crossing.cell), context_);
     if (points.cols() == 0) return;
     normals_.push_back(normals_at(surface_, points));
     paths_.push_back({crossing.length, std::move(points)});
@@ -184,7 +181,7 @@ class Ways {
 
   const Surface& surface_;
   const SurfaceCells& cells_;
-  const AnyNeighbourIndex* neighbours_;
+  const CellMap* map_;
   Surroundings<D> surroundings_;
   const DistanceField& from_p_;
   const DistanceField& from_q_;
@@ -198,10 +195,9 @@ class Ways {
 
 }  // namespace
 
-std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCells& cells,
-                                        const AnyNeighbourIndex* neighbours, const DistanceField& from_p,
-                                        const DistanceField& from_q, const StartPathOptions& options,
-                                        const Context& context) {
+std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCells& cells, const CellMap* map,
+                                        const DistanceField& from_p, const DistanceField& from_q,
+                                        const StartPathOptions& options, const Context& context) {
   if (from_p.method != MarchMethod::convergent || from_q.method != MarchMethod::convergent ||
       from_p.sources.cols() != 1 || from_q.sources.cols() != 1 || surface.dim() != cells.dim() ||
       from_p.distance.size() > cells.num_cells() || from_q.distance.size() > cells.num_cells()) {
@@ -211,7 +207,7 @@ std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCel
     throw InvalidArgument("start_paths: excess must not be negative, and at least one path be asked for");
   }
   return with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
-    return Ways<D, K>(surface, cells, neighbours, from_p, from_q, options, context).find();
+    return Ways<D, K>(surface, cells, map, from_p, from_q, options, context).find();
   });
 }
 

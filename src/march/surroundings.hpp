@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "march/neighbour_index.hpp"
+#include "march/cell_map.hpp"
 #include "march/stencil.hpp"
 #include "taut/cells/surface_cells.hpp"
 
@@ -15,8 +15,10 @@ namespace taut::detail {
 template <int D>
 class Surroundings {
  public:
-  Surroundings(const SurfaceCells& cells, const AnyNeighbourIndex* index)
-      : grid_(cells.grid()), index_(static_cast<const NeighbourIndex<D>*>(index)), stencil_(grid_.dim()) {}
+  Surroundings(const SurfaceCells& cells, const CellMap* map)
+      : grid_(cells.grid()),
+        index_(map == nullptr ? nullptr : static_cast<const NeighbourIndex<D>*>(map->neighbours.get())),
+        stencil_(grid_.dim()) {}
 
   /// Those of the 3^d block around integer coordinates `centre` that may be valid, its middle included, in a fixed
   /// order. The span lives until the next call. The same block again, as walks ask for it, costs nothing.

@@ -30,6 +30,7 @@ class TangentFrame {
       for (Index b = 0; b < c; ++b) reflect(b, v);
       v.head(c).setZero();
       const double norm = v.norm();
+      handedness_ = (c > 0 ? handedness_ : 1) * std::copysign(1.0, v(c));
       v(c) += std::copysign(norm, v(c));
       reflection_[c] = v;
       // One reflection carries the normal n to -sign(n_1) e_1 and turns the frame's orientation round.
@@ -41,6 +42,9 @@ class TangentFrame {
 
   [[nodiscard]] Index dim() const { return D == Eigen::Dynamic ? d_ : D; }
   [[nodiscard]] Index codim() const { return K == Eigen::Dynamic ? k_ : K; }
+
+  /// 1 where the normals followed by the tangent coordinates' axes are right-handed, -1 where they are left-handed.
+  [[nodiscard]] double handedness() const { return handedness_; }
 
   /// The tangential part of w in tangent coordinates: entries k .. d - 1 of the result, the first k are zero.
   [[nodiscard]] SmallVector<D> coordinates(SmallVector<D> w) const {
@@ -72,6 +76,7 @@ class TangentFrame {
   Index k_;
   SmallVector<D> reflection_[kMaxCodim];
   double scale_[kMaxCodim];
+  double handedness_ = 1;
   SmallVector<D> axis_;  // d = 3, k = 1: +-n, such that the frame is right-handed about it
 };
 

@@ -89,7 +89,7 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
 void CellLevels::refine_to_curvature() {
   std::shared_ptr<SurfaceCells>& coarsest = complete_.front().cells;
   for (int i = 0; i < kMostRefinements; ++i) {
-    NormalTurns turns(*coarsest);
+    NormalTurns turns(*coarsest, context_);
     resolved_ = turns.make_a_sheet() && turns.quantile(kTypically) <= kMostTurn;
     const bool enough = resolved_ && (i >= kRefinementsForRims || turns.quantile(kNearlyEverywhere) <= kMostTurn);
     if (enough || surface_.dim() != 3 || 4 * coarsest->num_cells() > kMostRefinedCells) return;
@@ -116,20 +116,22 @@ std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds
   return slot;
 }
 
-std::shared_ptr<const AnyNeighbourIndex> CellLevels::neighbours(int level) {
+std::shared_ptr<const CellMap> CellLevels::map(int level) {
   if (lazy()) return nullptr;
   const std::lock_guard lock(mutex_);
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
-  if (!slot.neighbours) slot.neighbours = index_neighbours(*slot.cells);
-  return slot.neighbours;
+  if (!slot.map) slot.map = map_cells(*slot.cells, context_);
+  return slot.map;
 }
 
 std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
   if (surface_.dim() != 3 || surface_.codim() != 1 || lazy() || fitted() || cell_ > 0) return nullptr;
-  const auto index = std::static_pointer_cast<const NeighbourIndex<3>>(neighbours(level));
+  const std::shared_ptr<const CellMap> known = map(level);
   const std::lock_guard lock(mutex_);
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
-  if (!slot.sharp_bends) slot.sharp_bends = std::make_shared<SharpBends>(*slot.cells, *index);
+  if (!slot.sharp_bends)
+    slot.sharp_bends =
+        std::make_shared<SharpBends>(*slot.cells, static_cast<const NeighbourIndex<3>&>(*known->neighbours), context_);
   return slot.sharp_bends;
 }
 

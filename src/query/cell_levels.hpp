@@ -4,7 +4,7 @@
 #include <mutex>
 #include <vector>
 
-#include "march/march_over.hpp"
+#include "march/cell_map.hpp"
 #include "query/sharp_bends.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
@@ -39,8 +39,8 @@ class CellLevels {
   /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are
   /// shared by all callers, who must not ask for more than their const interface; they may call from several threads.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
-  /// Who neighbours whom in the complete cells of a level, made when first asked for; null for lazy ones.
-  [[nodiscard]] std::shared_ptr<const AnyNeighbourIndex> neighbours(int level);
+  /// Of the complete cells of a level, made when first asked for; null for lazy ones.
+  [[nodiscard]] std::shared_ptr<const CellMap> map(int level);
   /// Where the surface bends within the complete cells of a level, made when first asked for; null where that is not
   /// looked at: lazy cells, cells of a given size or for samples, and other than surfaces in R^3.
   [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);
@@ -70,7 +70,7 @@ class CellLevels {
   std::mutex mutex_;
   struct Complete {
     std::shared_ptr<SurfaceCells> cells;
-    std::shared_ptr<const AnyNeighbourIndex> neighbours;
+    std::shared_ptr<const CellMap> map;
     std::shared_ptr<const SharpBends> sharp_bends;
   };
   std::vector<Complete> complete_;  // a level each, null until asked for

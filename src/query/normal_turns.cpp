@@ -4,23 +4,31 @@
 #include <cstdint>
 
 #include "cells/normal_turn.hpp"
+#include "core/parallel.hpp"
 
 namespace taut::detail {
 
-NormalTurns::NormalTurns(const SurfaceCells& cells) {
+NormalTurns::NormalTurns(const SurfaceCells& cells, const Context& context) {
   const CellGrid& grid = cells.grid();
   const auto d = static_cast<std::size_t>(cells.dim());
-  std::vector<std::int32_t> next(d);
-  for (Index i = 0; i < cells.num_cells(); ++i) {
-    if (!cells.valid(i)) continue;
-    for (std::size_t axis = 0; axis < d; ++axis) {
-      std::ranges::copy(grid.cell(i), next.begin());
-      ++next[axis];
-      const Index j = grid.find(next);
-      if (j == CellGrid::kNone || !cells.valid(j)) continue;
-      turns_.push_back(normal_turn(cells, i, j));
+  constexpr Index kBlock = 512;
+  std::vector<std::vector<double>> blocks(static_cast<std::size_t>((cells.num_cells() + kBlock - 1) / kBlock));
+  parallel_for(context, 0, cells.num_cells(), kBlock, [&](Index first, Index last) {
+    std::vector<double>& turns = blocks[static_cast<std::size_t>(first / kBlock)];
+    turns.reserve(d * static_cast<std::size_t>(last - first));
+    std::vector<std::int32_t> next(d);
+    for (Index i = first; i < last; ++i) {
+      if (!cells.valid(i)) continue;
+      for (std::size_t axis = 0; axis < d; ++axis) {
+        std::ranges::copy(grid.cell(i), next.begin());
+        ++next[axis];
+        const Index j = grid.find(next);
+        if (j == CellGrid::kNone || !cells.valid(j)) continue;
+        turns.push_back(normal_turn(cells, i, j));
+      }
     }
-  }
+  });
+  for (const std::vector<double>& block : blocks) turns_.insert(turns_.end(), block.begin(), block.end());
   constexpr double kMissing = 0.75;
   const auto dimension = static_cast<double>(cells.dim() - cells.codim());
   const auto sought = dimension * static_cast<double>(cells.num_valid());  // a pair is seen from one side only

@@ -3,13 +3,14 @@
 #include <vector>
 
 #include "taut/cells/surface_cells.hpp"
+#include "taut/core/context.hpp"
 
 namespace taut::detail {
 
 /// By how much the normal space turns from each valid cell to those behind its faces: how well cells follow a surface.
 class NormalTurns {
  public:
-  explicit NormalTurns(const SurfaceCells& cells);
+  NormalTurns(const SurfaceCells& cells, const Context& context);
 
   /// Radians: the given part of the turns stays below it. 0 when there are none.
   [[nodiscard]] double quantile(double part);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cells/normal_turn.hpp"
+#include "core/parallel.hpp"
 
 namespace taut::detail {
 namespace {
@@ -20,12 +21,11 @@ constexpr double kShortestArm = 0.7;
 
 }  // namespace
 
-SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours)
+SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours, const Context& context)
     : cells_(cells), near_(static_cast<std::size_t>(cells.num_cells()), 0) {
   const double h = cells.grid().size();
   const double gentle = std::cos(kSharp * kShortestArm);
-  std::vector<Index> around;
-  const auto is_sharp = [&](Index i) {
+  const auto is_sharp = [&](Index i, const std::vector<Index>& around) {
     return std::ranges::any_of(around, [&](Index j) {
       if (cells.normals(i).col(0).dot(cells.normals(j).col(0)) >= gentle) return false;
       const double apart = (cells.point(i) - cells.point(j)).norm() / h;
@@ -33,10 +33,20 @@ SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neigh
       return apart > kNearest && apart < kFarthest && turn > kSharp * std::max(apart, kShortestArm) && turn < kMostTurn;
     });
   };
+  std::vector<std::uint8_t> sharp(near_.size(), 0);
+  constexpr Index kBlock = 512;
+  parallel_for(context, 0, cells.num_cells(), kBlock, [&](Index first, Index last) {
+    std::vector<Index> around;
+    for (Index i = first; i < last; ++i) {
+      if (!cells.valid(i)) continue;
+      neighbours.around(i, around);
+      sharp[static_cast<std::size_t>(i)] = is_sharp(i, around) ? 1 : 0;
+    }
+  });
+  std::vector<Index> around;
   for (Index i = 0; i < cells.num_cells(); ++i) {
-    if (!cells.valid(i)) continue;
+    if (sharp[static_cast<std::size_t>(i)] == 0) continue;
     neighbours.around(i, around);
-    if (!is_sharp(i)) continue;
     for (const Index j : around) near_[static_cast<std::size_t>(j)] = 1;
   }
 }

@@ -5,6 +5,7 @@
 
 #include "march/neighbour_index.hpp"
 #include "taut/cells/surface_cells.hpp"
+#include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
@@ -14,7 +15,7 @@ namespace taut::detail {
 class SharpBends {
  public:
   /// Looks at all cells, which must stay. `neighbours`: theirs.
-  SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours);
+  SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours, const Context& context);
 
   /// Is there such a place next to a curve (3 x m) on the surface.
   [[nodiscard]] bool along(const PointsIn& curve) const;

@@ -83,7 +83,7 @@ void StartFinder::tabulate(Index num_pairs) {
     const bool finest = coarser <= 1;
     std::shared_ptr<SurfaceCells> cells = levels_.subdivided(std::max(1.0, coarser) * levels_.size(0));
     if (!cells) return;
-    NormalTurns turns(*cells);
+    NormalTurns turns(*cells, context_);
     const double turn = turns.quantile(kTurnQuantile);
     if ((turn > kTableTurn || !turns.make_a_sheet()) && !finest) continue;
     if (!turns.make_a_sheet()) return;
@@ -157,7 +157,7 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
   const Stopwatch watch;
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
-  const Ground ground{cells, levels_.neighbours(level)};
+  const Ground ground{cells, levels_.map(level)};
   const double cells_seconds = watch.seconds();
   // No rival is longer than this, by the table.
   double longest = kInfinity;
@@ -199,7 +199,7 @@ DistanceField StartFinder::march_towards(const Ground& ground, const Vector& sou
                                          double longest) const {
   MarchOptions march_options{.method = options_.march, .longest = longest};
   if (!options_.all) march_options.target = target;
-  return march_over(surface_, *ground.cells, ground.neighbours.get(), source, march_options, context_);
+  return march_over(surface_, *ground.cells, ground.map.get(), source, march_options, context_);
 }
 
 DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {
@@ -218,12 +218,12 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
     if (seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell)) {
       if (!from_q) from_q = march_towards(ground, q, from_p.sources.col(0), kInfinity);
       starts.paths = start_paths_over(
-          surface_, cells, ground.neighbours.get(), from_p, *from_q,
+          surface_, cells, ground.map.get(), from_p, *from_q,
           {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
           context_);
     }
     if (starts.paths.empty()) {
-      Points descent = descend_over(surface_, cells, ground.neighbours.get(), from_p, q);
+      Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
       if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
     }
   }

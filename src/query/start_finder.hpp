@@ -56,7 +56,7 @@ class StartFinder {
   /// Ways where the distances from p over the cells of level 0 are there already, at least up to q.
   [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
                                    const Vector& q) const {
-    return continue_to({std::move(cells), levels_.neighbours(0)}, from_p, q, std::nullopt);
+    return continue_to({std::move(cells), levels_.map(0)}, from_p, q, std::nullopt);
   }
   /// Does the surface bend within the cells of a level along a curve (d x m), where those were chosen without looking.
   [[nodiscard]] bool bends_sharply(int level, const Points& curve) const;
@@ -75,10 +75,10 @@ class StartFinder {
   };
   [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
-  /// Cells to march over, and their neighbours if they are complete.
+  /// Cells to march over, and a map of them if they are complete.
   struct Ground {
     std::shared_ptr<SurfaceCells> cells;
-    std::shared_ptr<const AnyNeighbourIndex> neighbours;
+    std::shared_ptr<const CellMap> map;
   };
   /// Ways by marching on these cells, with all rivals no longer than `longest`.
   [[nodiscard]] Starts find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const;

@@ -1,0 +1,23 @@
+#include "march/cell_map.hpp"
+
+#include "march/dimensions.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// Charts of so many take 100 MB.
+constexpr Index kMostChartedCells = 200'000;
+
+}  // namespace
+
+std::shared_ptr<const CellMap> map_cells(const SurfaceCells& cells, const Context& context) {
+  auto map = std::make_shared<CellMap>();
+  with_dimensions(cells.dim(), cells.codim(),
+                  [&]<int D, int K>() { map->neighbours = std::make_unique<const NeighbourIndex<D>>(cells); });
+  if (cells.dim() - cells.codim() == 2 && cells.num_cells() <= kMostChartedCells) {
+    map->charts = std::make_unique<const SurfaceCharts>(cells, *map->neighbours, context);
+  }
+  return map;
+}
+
+}  // namespace taut::detail
