@@ -30,7 +30,7 @@ ChartMarch::ChartMarch(const SurfaceCharts& charts)
     : charts_(charts),
       front_(charts.num_cells(), 1 / kBucketsPerCell),
       state_(static_cast<std::size_t>(charts.num_cells()) + 1) {
-  for (std::vector<float>* entries : {&distance_, &gradient_x_, &gradient_y_, &offered2_, &along_, &miss_}) {
+  for (std::vector<float>* entries : {&distance_, &gradient_x_, &gradient_y_, &offered2_, &length2_, &along_, &miss_}) {
     entries->resize(charts.most_links());
   }
 }
@@ -102,20 +102,22 @@ void ChartMarch::gather(const ChartLinks& links) {
     const Floats gx = cosine * there_x - sine * there_y;
     const Floats gy = sine * there_x + cosine * there_y;
     const Floats along = -(gx * x + gy * y);
-    nearest_.take(u * (u + 2 * along) + (x * x + y * y), j);  // as circular_estimate2
+    const Floats length2 = x * x + y * y;
+    nearest_.take(u * (u + 2 * along) + length2, j);  // as circular_estimate2
     store(u, &distance_[j]);
     store(gx, &gradient_x_[j]);
     store(gy, &gradient_y_[j]);
     store(offered2, &offered2_[j]);
     store(along, &along_[j]);
+    store(length2, &length2_[j]);
     store(gy * x - gx * y, &miss_[j]);
   }
 }
 
-/// All but its estimate.
+/// All but its estimate and its length.
 Neighbour<2, float> ChartMarch::neighbour(const ChartLinks& links, std::size_t j) const {
   const Eigen::Vector2f position(links.position[0][j], links.position[1][j]);
-  return {position, {gradient_x_[j], gradient_y_[j]}, distance_[j], position.norm(), along_[j], 0, 0};
+  return {position, {gradient_x_[j], gradient_y_[j]}, distance_[j], 0, along_[j], 0, 0};
 }
 
 /// The ray through x passes between two neighbours, one on either side: of those on each side the one whose ray passes
@@ -127,21 +129,21 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
   const Floats branch_y = all_lanes(gradient_y_[first]);
   const Floats never = all_lanes(kInfinity);
   constexpr auto kBranch = static_cast<float>(kMinBranchCosine);
-  constexpr auto kBeside = static_cast<float>(kBehind);
-  Least least[2];  // with the ray to the left and to the right of x
+  constexpr auto kBeside2 = static_cast<float>(kBehind * kBehind);
+  constexpr float kLast = 16;  // more than an edge is long
+  Least least[2];              // with the ray to the left and to the right of x
   for (std::size_t j = 0; j < links.count; j += kLanes) {
     const Floats along = load(&along_[j]);
-    const Floats x = load(links.position[0] + j);
-    const Floats y = load(links.position[1] + j);
-    const Floats length = sqrt(x * x + y * y);
+    const Floats length2 = load(&length2_[j]);
+    const Floats along2 = along * abs(along);
     const Floats miss = load(&miss_[j]);
     // Zero, as their gradient, for those not settled.
     const Floats cosine = load(&gradient_x_[j]) * branch_x + load(&gradient_y_[j]) * branch_y;
     // Those beside or ahead of x only where nobody is behind.
-    const Floats penalty = along < kBeside * length ? 4 * length : all_lanes(0);
+    const Floats penalty = along2 < kBeside2 * length2 ? kLast + length2 : all_lanes(0);
     Floats measure = abs(miss) + penalty;
     measure = cosine < kBranch ? never : measure;
-    measure = along < -kBeside * length ? never : measure;
+    measure = along2 < -kBeside2 * length2 ? never : measure;
     least[0].take(miss < 0 ? never : measure, j);
     least[1].take(miss < 0 ? measure : never, j);
   }
@@ -157,6 +159,7 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
   for (std::size_t j = 0; j < links.count; ++j) {
     if (!(distance_[j] < kInfinity)) continue;
     Neighbour<2, float>& y = one_by_one_.emplace_back(neighbour(links, j));
+    y.length = y.position.norm();
     y.estimate = std::sqrt(circular_estimate2(y.distance, y.along, y.length * y.length));
   }
   return arrival_from_one(one_by_one_, 2);
@@ -172,9 +175,8 @@ void ChartMarch::settle(Index i, const Arrival<2, float>& arrival, const ChartLi
   const Floats gx = all_lanes(here.gradient[0]);
   const Floats gy = all_lanes(here.gradient[1]);
   for (std::size_t j = 0; j < links.count; j += kLanes) {
-    const Floats x = load(links.position[0] + j);
-    const Floats y = load(links.position[1] + j);
-    Floats estimate2 = u * (u + 2 * (gx * x + gy * y)) + (x * x + y * y);  // as circular_estimate2
+    const Floats along = gx * load(links.position[0] + j) + gy * load(links.position[1] + j);
+    Floats estimate2 = u * (u + 2 * along) + load(&length2_[j]);  // as circular_estimate2
     estimate2 = estimate2 > 0 ? estimate2 : all_lanes(0);
     // Better by kWorthwhile, squared. What came in since they were gathered is the source's own offers.
     unsigned better = bits(estimate2 < load(&offered2_[j]) - 2 * kWorthwhile * u);

@@ -67,9 +67,10 @@ class ChartMarch {
   std::vector<Cell> state_;  // of the cells, and of one that is never settled
   // The neighbours of the cell being visited, settled or not, their gradients in its chart: entry j for link j.
   std::vector<float> distance_, gradient_x_, gradient_y_, offered2_;
-  std::vector<float> along_;  // how far the cell lies ahead of the neighbour
-  std::vector<float> miss_;   // by how much the ray through the neighbour misses the cell, signed
-  Least nearest_;             // the least square of an estimate of the cell's distance
+  std::vector<float> length2_;  // of the edge, squared
+  std::vector<float> along_;    // how far the cell lies ahead of the neighbour
+  std::vector<float> miss_;     // by how much the ray through the neighbour misses the cell, signed
+  Least nearest_;               // the least square of an estimate of the cell's distance
   std::vector<Neighbour<2, float>> one_by_one_;
 };
 

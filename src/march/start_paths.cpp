@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "cells/normal_turn.hpp"
@@ -91,21 +92,6 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, Surroundings<D>& sur
   return found;
 }
 
-/// Down from the crossing to both ends; empty when one descent fails.
-Points two_descents(const Surface& surface, const SurfaceCells& cells, const CellMap* map, const DistanceField& from_p,
-                    const DistanceField& from_q, const VectorIn& crossing, const Context& context) {
-  Points first;
-  Points second;
-  parallel_for(context, 0, 2, 1, [&](Index begin, Index end) {
-    if (begin == 0) first = descend_over(surface, cells, map, from_p, crossing);
-    if (end == 2) second = descend_over(surface, cells, map, from_q, crossing);
-  });
-  if (first.cols() < 2 || second.cols() < 2) return Points(surface.dim(), 0);
-  Points path(surface.dim(), first.cols() + second.cols() - 1);
-  path << first, second.leftCols(second.cols() - 1).rowwise().reverse();
-  return path;
-}
-
 /// Collects one start for each way.
 template <int D, int K>
 class Ways {
@@ -142,13 +128,19 @@ class Ways {
   void cross(double difference) {
     const std::vector<BandCell> band = slice(cells_, from_p_, from_q_, difference);
     if (band.empty()) return;
-    const bool first = paths_.empty();  // what is apart on the first slice needs no comparing
+    const bool first = paths_.empty();
     if (first) least_ = band.front().length;
     const double lever = (least_ - std::abs(difference)) / 2;
     const double spread = std::max(kSpread * lever, kSpreadCells * cells_.grid().size());
+    std::vector<BandCell> lowest;  // of the hollows
     for (const std::size_t b : hollows<D, K>(cells_, surroundings_, band, kNoise * lever, place_)) {
       if (band[b].length > (1 + options_.excess) * least_) break;
-      add(band[b], first ? 0 : spread);
+      lowest.push_back(band[b]);
+    }
+    if (first) {
+      descend_from(lowest);  // all are new
+    } else {
+      for (const BandCell& crossing : lowest) add(crossing, spread);
     }
     for (const BandCell& crossing : band) {
       if (crossing.length > band.front().length + kFlat * lever) break;
@@ -156,16 +148,35 @@ class Ways {
     }
   }
 
+  /// One that may be new.
   void add(const BandCell& crossing, double spread) {
     for (std::size_t w = 0; w < paths_.size(); ++w) {
       // A longer way may share this part of a shorter one.
       if (paths_[w].length > crossing.length + kNoise * least_) continue;
       if (passes(paths_[w].points, normals_[w], crossing.cell, spread)) return;
     }
-    Points points = two_descents(surface_, cells_, map_, from_p_, from_q_, cells_.point(crossing.cell), context_);
-    if (points.cols() == 0) return;
-    normals_.push_back(normals_at(surface_, points));
-    paths_.push_back({crossing.length, std::move(points)});
+    descend_from({&crossing, 1});
+  }
+
+  /// Adds the ways through crossings down to both ends, where there is a way down.
+  void descend_from(std::span<const BandCell> crossings) {
+    std::vector<Points> halves(2 * crossings.size());
+    parallel_for(context_, 0, static_cast<Index>(halves.size()), 1, [&](Index first, Index last) {
+      for (Index i = first; i < last; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        halves[at] =
+            descend_over(surface_, cells_, map_, i % 2 == 0 ? from_p_ : from_q_, cells_.point(crossings[at / 2].cell));
+      }
+    });
+    for (std::size_t c = 0; c < crossings.size(); ++c) {
+      const Points& there = halves[2 * c];
+      const Points& back = halves[2 * c + 1];
+      if (there.cols() < 2 || back.cols() < 2) continue;
+      Points points(surface_.dim(), there.cols() + back.cols() - 1);
+      points << there, back.leftCols(back.cols() - 1).rowwise().reverse();
+      normals_.push_back(normals_at(surface_, points));
+      paths_.push_back({crossings[c].length, std::move(points)});
+    }
   }
 
   /// Does a way run past the cell within a distance, on the same side of the body: round a tube, ways may differ that
