@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "curve/polyline.hpp"
+#include "query/fan.hpp"
 #include "query/find_ways.hpp"
 #include "query/march_check.hpp"
 #include "query/normal_turns.hpp"
@@ -157,7 +158,7 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
   const Stopwatch watch;
   const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
-  const Ground ground{cells, levels_.map(level)};
+  const Ground ground{cells, levels_.map(level), levels_.sharp_bends(level)};
   const double cells_seconds = watch.seconds();
   // No rival is longer than this, by the table.
   double longest = kInfinity;
@@ -222,6 +223,7 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
           {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
           context_);
     }
+    add_fans(ground, from_p, from_q, starts);
     if (starts.paths.empty()) {
       Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
       if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
@@ -231,6 +233,24 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   starts.cells = ground.cells;
   starts.seconds.march = watch.seconds();
   return starts;
+}
+
+/// Where the surface bends sharply around an end, the ways by the fields may begin on the wrong side of a spike.
+void StartFinder::add_fans(const Ground& ground, const DistanceField& from_p,
+                           const std::optional<DistanceField>& from_q, Starts& starts) const {
+  if (!from_q || starts.paths.empty() || !ground.bends) return;
+  const double most = (1 + kExcess) * starts.paths.front().length;
+  const auto add = [&](const DistanceField& from, const DistanceField& to, bool backwards) {
+    const Vector end = from.sources.col(0);
+    if (!ground.bends->along(end)) return;
+    for (StartPath& start : fan_out(surface_, *ground.cells, *ground.map, *ground.bends, end, to, most, context_)) {
+      if (backwards) start.points = start.points.rowwise().reverse().eval();
+      starts.paths.push_back(std::move(start));
+    }
+  };
+  add(from_p, *from_q, false);
+  add(*from_q, from_p, true);
+  std::ranges::stable_sort(starts.paths, {}, &StartPath::length);
 }
 
 bool StartFinder::apart(SurfaceCells& cells, const Vector& p, const Vector& q) {

@@ -56,7 +56,7 @@ class StartFinder {
   /// Ways where the distances from p over the cells of level 0 are there already, at least up to q.
   [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
                                    const Vector& q) const {
-    return continue_to({std::move(cells), levels_.map(0)}, from_p, q, std::nullopt);
+    return continue_to({std::move(cells), levels_.map(0), levels_.sharp_bends(0)}, from_p, q, std::nullopt);
   }
   /// Does the surface bend within the cells of a level along a curve (d x m), where those were chosen without looking.
   [[nodiscard]] bool bends_sharply(int level, const Points& curve) const;
@@ -75,16 +75,19 @@ class StartFinder {
   };
   [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
-  /// Cells to march over, and a map of them if they are complete.
+  /// Cells to march over, and what is known of them if they are complete.
   struct Ground {
     std::shared_ptr<SurfaceCells> cells;
     std::shared_ptr<const CellMap> map;
+    std::shared_ptr<const SharpBends> bends;
   };
   /// Ways by marching on these cells, with all rivals no longer than `longest`.
   [[nodiscard]] Starts find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const;
   /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
   [[nodiscard]] Starts continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
                                    std::optional<DistanceField> from_q) const;
+  void add_fans(const Ground& ground, const DistanceField& from_p, const std::optional<DistanceField>& from_q,
+                Starts& starts) const;
   /// The distances from `source`, as far as paths to `target` need them that are no longer than `longest`.
   [[nodiscard]] DistanceField march_towards(const Ground& ground, const Vector& source, const Vector& target,
                                             double longest) const;

@@ -360,6 +360,27 @@ TEST(Rivals, AStartThatIsRoughlyKnownHidesNoBetterOne) {
   EXPECT_NEAR(path.length, 0.3429956761896824, 1e-9);
 }
 
+// Next to the apex of a cone no cell tells on which side of it a way begins. The truth: the cone unrolled into the
+// plane.
+TEST(Rivals, TheApexOfAConeIsPassedOnTheShorterSide) {
+  PathSolver solver(parse_surface("x^2 + y^2 = z^2/4"));
+  const double sine = 1 / std::sqrt(5.0);  // of half the cone's opening
+  const auto at = [&](double from_apex, double angle) {
+    return Vector(from_apex * Eigen::Vector3d(sine * std::cos(angle), sine * std::sin(angle), 2 * sine));
+  };
+  for (const double a : {0.003, 0.007, 0.015, 0.04}) {
+    for (int turn = 0; turn < 8; ++turn) {
+      const double start = 0.8 * turn;
+      for (const double between : {2.85, 3.02, -3.02}) {
+        const PathResult path = solver.solve(at(a, start), at(0.9, start + between));
+        ASSERT_EQ(path.status, Status::ok) << path.message;
+        const double truth = std::sqrt(a * a + 0.81 - 1.8 * a * std::cos(between * sine));
+        EXPECT_NEAR(path.length, truth, 1e-9) << "from " << a << ", " << start << " turned by " << between;
+      }
+    }
+  }
+}
+
 TEST(Rivals, OneSourceToManyFindsTheSameAsPairByPair) {
   PathSolver solver(test::ellipsoid(1, 1, 0.1));
   const Vector p = Eigen::Vector3d(0.9852617525576567, 0.1625644986322215, -0.00532171281775839);
