@@ -8,6 +8,7 @@
 
 #include "query/cell_size.hpp"
 #include "query/normal_turns.hpp"
+#include "taut/cells/components.hpp"
 #include "taut/cells/find_box.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
@@ -122,6 +123,17 @@ std::shared_ptr<const CellMap> CellLevels::map(int level) {
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
   if (!slot.map) slot.map = map_cells(*slot.cells, context_);
   return slot.map;
+}
+
+std::shared_ptr<const std::vector<std::int32_t>> CellLevels::components(int level, bool known) {
+  if (lazy()) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (known && complete_.size() <= static_cast<std::size_t>(level)) return nullptr;
+  Complete& slot = complete_.at(static_cast<std::size_t>(level));
+  if (!slot.components && !known) {
+    slot.components = std::make_shared<std::vector<std::int32_t>>(taut::components(slot.cells->grid()).label);
+  }
+  return slot.components;
 }
 
 std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {

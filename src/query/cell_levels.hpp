@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -41,6 +42,9 @@ class CellLevels {
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
   /// Of the complete cells of a level, made when first asked for; null for lazy ones.
   [[nodiscard]] std::shared_ptr<const CellMap> map(int level);
+  /// Which component of the complete cells of a level each of them belongs to, found out when first asked for; null for
+  /// lazy ones. Only if `known`: null unless someone has asked before.
+  [[nodiscard]] std::shared_ptr<const std::vector<std::int32_t>> components(int level, bool known = false);
   /// Where the surface bends within the complete cells of a level, made when first asked for; null where that is not
   /// looked at: lazy cells, cells of a given size or for samples, and other than surfaces in R^3.
   [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);
@@ -72,6 +76,7 @@ class CellLevels {
     std::shared_ptr<SurfaceCells> cells;
     std::shared_ptr<const CellMap> map;
     std::shared_ptr<const SharpBends> sharp_bends;
+    std::shared_ptr<const std::vector<std::int32_t>> components;
   };
   std::vector<Complete> complete_;  // a level each, null until asked for
 };

@@ -52,6 +52,15 @@ bool is_geodesic(const Geodesic& geodesic) {
          (geodesic.status == Status::rank_deficient && geodesic.length_error <= kFar * geodesic.length);
 }
 
+/// Is it a curve between these ends, and no shorter than their distance. Whatever else goes wrong, no other leaves here
+/// as a path.
+bool joins(const Geodesic& geodesic, const VectorIn& p, const VectorIn& q) {
+  constexpr double kRounding = 1e-9;
+  const double chord = (q - p).norm();
+  return geodesic.points.cols() >= 2 && std::isfinite(geodesic.length) &&
+         geodesic.length + geodesic.length_error >= (1 - kRounding) * chord;
+}
+
 /// The point of a curve (d x m) at which the gradients are weakest or nearest to depending on each other, measured
 /// against the rest of the curve: where a singular point is close.
 Vector weakest_point(const Surface& surface, const Points& curve) {
@@ -233,6 +242,11 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   result.grid_path = std::move(best->start);
   result.candidates = std::move(candidates);
   result.unique = first_is_unique(result.candidates, options_.tolerance);
+  const Points& way = starts.paths.front().points;
+  if (result.status == Status::ok && !joins(result, way.leftCols(1), way.rightCols(1))) {
+    result.status = Status::not_converged;
+    result.message = "the curve found does not lead from one end to the other; please report this";
+  }
   result.seconds.correct += watch.seconds();
   return result.status == Status::ok && result.length <= (1 + starts.doubt) * starts.paths.front().length;
 }

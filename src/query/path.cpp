@@ -157,7 +157,13 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   bool doubts = false;
   std::optional<PathResult> walked;
   double marched = 0;
+  const auto disconnected = [&] {
+    result.status = Status::disconnected;
+    result.message = "the two points lie on different components of the surface";
+    return result;
+  };
   for (int level = 0; level < levels().num_levels(); ++level) {
+    if (finder.known_to_be_apart(level, p, q)) return disconnected();
     Starts starts;
     try {
       starts = level == 0 && first ? *std::move(first) : finder.find(p, q, level);
@@ -176,11 +182,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
       return result;
     }
     if (starts.paths.empty()) {
-      if (detail::StartFinder::apart(*starts.cells, p, q)) {
-        result.status = Status::disconnected;
-        result.message = "the two points lie on different components of the surface";
-        return result;
-      }
+      if (finder.apart(*starts.cells, level, p, q)) return disconnected();
       const Index finer = starts.cells->num_cells() << (surface.dim() - 1);
       if (!walked && finer > kMostCellsBeforeWalks) {
         walked = walk(result, p, q, corrector);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -52,6 +53,14 @@ Points ends(const Vector& p, const Vector& q) {
   Points x(p.size(), 2);
   x << p, q;
   return x;
+}
+
+/// Do p and q lie in cells with different labels.
+bool in_two(SurfaceCells& cells, const std::vector<std::int32_t>& label, const Vector& p, const Vector& q) {
+  const Index i = cells.cell_at(p);
+  const Index j = cells.cell_at(q);
+  if (i == CellGrid::kNone || j == CellGrid::kNone) return false;
+  return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
 }
 
 }  // namespace
@@ -253,13 +262,15 @@ void StartFinder::add_fans(const Ground& ground, const DistanceField& from_p,
   std::ranges::stable_sort(starts.paths, {}, &StartPath::length);
 }
 
-bool StartFinder::apart(SurfaceCells& cells, const Vector& p, const Vector& q) {
-  const Index i = cells.cell_at(p);
-  const Index j = cells.cell_at(q);
-  if (i == CellGrid::kNone || j == CellGrid::kNone) return false;
-  for (Index c = 0; cells.is_lazy() && c < cells.num_cells(); ++c) cells.expand(c);
-  const std::vector<std::int32_t> label = components(cells.grid()).label;
-  return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
+bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const Vector& q) const {
+  if (!cells.is_lazy()) return in_two(cells, *levels_.components(level), p, q);
+  for (Index c = 0; c < cells.num_cells(); ++c) cells.expand(c);
+  return in_two(cells, components(cells.grid()).label, p, q);
+}
+
+bool StartFinder::known_to_be_apart(int level, const Vector& p, const Vector& q) const {
+  const auto labels = levels_.exist() ? levels_.components(level, true) : nullptr;
+  return labels && in_two(*levels_.cells(level, ends(p, q)), *labels, p, q);
 }
 
 }  // namespace taut::detail

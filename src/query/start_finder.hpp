@@ -65,7 +65,9 @@ class StartFinder {
 
   /// True when p and q lie in different components of the cells that found no way, which is a proof where the surface
   /// has interval bounds.
-  [[nodiscard]] static bool apart(SurfaceCells& cells, const Vector& p, const Vector& q);
+  [[nodiscard]] bool apart(SurfaceCells& cells, int level, const Vector& p, const Vector& q) const;
+  /// The same where another pair has had to find that out: without looking for ways first.
+  [[nodiscard]] bool known_to_be_apart(int level, const Vector& p, const Vector& q) const;
 
  private:
   /// Of lengths by the table, relative.
