@@ -1,5 +1,6 @@
 #include "march/cell_map.hpp"
 
+#include "core/memory_limit.hpp"
 #include "march/dimensions.hpp"
 
 namespace taut::detail {
@@ -7,6 +8,7 @@ namespace {
 
 /// Charts of so many take 100 MB.
 constexpr Index kMostChartedCells = 200'000;
+constexpr std::size_t kBytesPerCell = 500;
 
 }  // namespace
 
@@ -14,7 +16,8 @@ std::shared_ptr<const CellMap> map_cells(const SurfaceCells& cells, const Contex
   auto map = std::make_shared<CellMap>();
   with_dimensions(cells.dim(), cells.codim(),
                   [&]<int D, int K>() { map->neighbours = std::make_unique<const NeighbourIndex<D>>(cells); });
-  if (cells.dim() - cells.codim() == 2 && cells.num_cells() <= kMostChartedCells) {
+  const bool fits = kBytesPerCell * static_cast<std::size_t>(cells.num_cells()) <= memory_limit(context);
+  if (cells.dim() - cells.codim() == 2 && cells.num_cells() <= kMostChartedCells && fits) {
     map->charts = std::make_unique<const SurfaceCharts>(cells, *map->neighbours, context);
   }
   return map;

@@ -125,15 +125,19 @@ std::shared_ptr<const CellMap> CellLevels::map(int level) {
   return slot.map;
 }
 
-std::shared_ptr<const std::vector<std::int32_t>> CellLevels::components(int level, bool known) {
-  if (lazy()) return nullptr;
+std::shared_ptr<const std::vector<std::int32_t>> CellLevels::components(int level) {
   const std::lock_guard lock(mutex_);
-  if (known && complete_.size() <= static_cast<std::size_t>(level)) return nullptr;
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
-  if (!slot.components && !known) {
+  if (!slot.components) {
     slot.components = std::make_shared<std::vector<std::int32_t>>(taut::components(slot.cells->grid()).label);
   }
   return slot.components;
+}
+
+std::shared_ptr<const std::vector<std::int32_t>> CellLevels::known_components(int level) {
+  const std::lock_guard lock(mutex_);
+  const auto at = static_cast<std::size_t>(level);
+  return at < complete_.size() ? complete_[at].components : nullptr;
 }
 
 std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
@@ -141,9 +145,10 @@ std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
   const std::shared_ptr<const CellMap> known = map(level);
   const std::lock_guard lock(mutex_);
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
-  if (!slot.sharp_bends)
-    slot.sharp_bends =
-        std::make_shared<SharpBends>(*slot.cells, static_cast<const NeighbourIndex<3>&>(*known->neighbours), context_);
+  if (!slot.sharp_bends) {
+    const auto& neighbours = static_cast<const NeighbourIndex<3>&>(*known->neighbours);
+    slot.sharp_bends = std::make_shared<SharpBends>(*slot.cells, neighbours, context_);
+  }
   return slot.sharp_bends;
 }
 

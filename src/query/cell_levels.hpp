@@ -42,9 +42,10 @@ class CellLevels {
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
   /// Of the complete cells of a level, made when first asked for; null for lazy ones.
   [[nodiscard]] std::shared_ptr<const CellMap> map(int level);
-  /// Which component of the complete cells of a level each of them belongs to, found out when first asked for; null for
-  /// lazy ones. Only if `known`: null unless someone has asked before.
-  [[nodiscard]] std::shared_ptr<const std::vector<std::int32_t>> components(int level, bool known = false);
+  /// Which component of the complete cells of a level each of them belongs to, found out when first asked for.
+  [[nodiscard]] std::shared_ptr<const std::vector<std::int32_t>> components(int level);
+  /// The same, null where nobody has asked yet.
+  [[nodiscard]] std::shared_ptr<const std::vector<std::int32_t>> known_components(int level);
   /// Where the surface bends within the complete cells of a level, made when first asked for; null where that is not
   /// looked at: lazy cells, cells of a given size or for samples, and other than surfaces in R^3.
   [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);

@@ -269,7 +269,7 @@ bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const V
 }
 
 bool StartFinder::known_to_be_apart(int level, const Vector& p, const Vector& q) const {
-  const auto labels = levels_.exist() ? levels_.components(level, true) : nullptr;
+  const std::shared_ptr<const std::vector<std::int32_t>> labels = levels_.known_components(level);
   return labels && in_two(*levels_.cells(level, ends(p, q)), *labels, p, q);
 }
 
