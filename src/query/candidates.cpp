@@ -28,14 +28,18 @@ bool same_curve(const PathCandidate& a, const PathCandidate& b) {
 }  // namespace
 
 bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added) {
-  for (const PathCandidate& known : candidates) {
-    if (same_curve(known, added)) return false;
+  const auto at_most = [](const PathCandidate& candidate) { return candidate.length + candidate.length_error; };
+  const auto same = std::ranges::find_if(candidates, [&](const auto& known) { return same_curve(known, added); });
+  const bool is_new = same == candidates.end();
+  if (!is_new) {
+    if (at_most(*same) <= at_most(added)) return false;
+    candidates.erase(same);
   }
   const auto longer =
       std::upper_bound(candidates.begin(), candidates.end(), added.length,
                        [](double length, const PathCandidate& candidate) { return length < candidate.length; });
   candidates.insert(longer, std::move(added));
-  return true;
+  return is_new;
 }
 
 bool first_is_unique(const std::vector<PathCandidate>& candidates, double tolerance) {

@@ -4,7 +4,8 @@
 
 namespace taut::detail {
 
-/// Files a geodesic among the candidates, shortest first, unless it is there already. True when it was new.
+/// Files a geodesic among the candidates, shortest first; of two that cannot be told apart, the one that is the shorter
+/// for certain. True when it was new.
 bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added);
 
 /// True when no other candidate is as short as the first, within the errors of both or `tolerance` of the length.
