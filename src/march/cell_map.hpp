@@ -15,7 +15,7 @@ struct CellMap {
       charts;  ///< of surfaces (d - k = 2), where the cells are not too many; else null
 };
 
-/// Takes as long as two marches over a fifth of the cells, side by side. Keeps a reference to the cells.
+/// Takes about as long as a march over all cells. Keeps a reference to them.
 [[nodiscard]] std::shared_ptr<const CellMap> map_cells(const SurfaceCells& cells, const Context& context);
 
 }  // namespace taut::detail
