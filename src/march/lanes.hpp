@@ -30,7 +30,7 @@ inline unsigned bits(Ints comparison) {
 }
 
 /// 1 / sqrt(x) for x >= 0, to a few units in the last place; large but finite at 0, and sqrt(x), 0 there. Newton's
-/// method from the bits, which everywhere is faster than to wait for a division.
+/// method from the bits, since the vector extension has no square root.
 inline Floats inverse_sqrt(Floats x) {
   Ints guess;
   std::memcpy(&guess, &x, sizeof guess);
