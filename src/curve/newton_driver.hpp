@@ -69,6 +69,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   static constexpr Index kCoarseSegments = 24;
   static constexpr int kMostCuts = 11;  // of a coarse segment, into halves
   static constexpr int kMaxCycles = 14;
+  static constexpr double kClosingIn = 0.8;       // the weakest gradient seen falls by this from cycle to cycle
   static constexpr double kSoftRounding = 1e-11;  // of the length: differences along neutral directions below
   static constexpr double kTooWeak = 3e-5;       // gradients, of the strongest: the second variation says nothing below
   static constexpr double kShortestDip = 1e-5;   // of the whole: how closely a near singular point is looked at...
@@ -248,6 +249,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     start_fine(first_degree());
     Relaxation outcome = Relaxation::converged;
     double before = std::numeric_limits<double>::infinity();
+    double weakest = 1;
     int slow = 0;
     int stalls = 0;
     nonsmooth_ = false;
@@ -266,7 +268,10 @@ class NewtonDriver : public NewtonSolver::Backend {
       if (outcome == Relaxation::stalled && (++stalls > 2 || kernel_.num_iterations() >= options_.max_iterations))
         break;
       const bool precise = error <= 0.5 * options_.tolerance * check_.length;
-      if (error > 0.1 * before && !precise) {
+      // Closer and closer to a singular point: what the surface does there has not been seen yet.
+      const bool closing_in = check_.weakest_gradient < kClosingIn * weakest;
+      weakest = check_.weakest_gradient;
+      if (error > 0.1 * before && !precise && !closing_in) {
         nonsmooth_ = true;
         if (error > 0.9 * before && ++slow >= 4) break;
       }

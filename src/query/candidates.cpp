@@ -18,28 +18,27 @@ constexpr double kRounding = 1e-12;
 
 constexpr Index kStations = 16;
 
-bool same_curve(const PathCandidate& a, const PathCandidate& b) {
-  const double errors = kSameErrors * (a.length_error + b.length_error) + kRounding * a.length;
-  if (std::abs(a.length - b.length) > errors) return false;
+}  // namespace
+
+bool same_curve(const PathCandidate& a, const PathCandidate& b, double apart) {
+  if (std::abs(a.length - b.length) > apart + kRounding * a.length) return false;
   return (at_equal_parts(a.points, kStations) - at_equal_parts(b.points, kStations)).colwise().norm().maxCoeff() <=
          kSamePlace * a.length;
 }
 
-}  // namespace
-
-bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added) {
+void add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added) {
   const auto at_most = [](const PathCandidate& candidate) { return candidate.length + candidate.length_error; };
-  const auto same = std::ranges::find_if(candidates, [&](const auto& known) { return same_curve(known, added); });
-  const bool is_new = same == candidates.end();
-  if (!is_new) {
-    if (at_most(*same) <= at_most(added)) return false;
+  const auto same = std::ranges::find_if(candidates, [&](const PathCandidate& known) {
+    return same_curve(known, added, kSameErrors * (known.length_error + added.length_error));
+  });
+  if (same != candidates.end()) {
+    if (at_most(*same) <= at_most(added)) return;
     candidates.erase(same);
   }
   const auto longer =
       std::upper_bound(candidates.begin(), candidates.end(), added.length,
                        [](double length, const PathCandidate& candidate) { return length < candidate.length; });
   candidates.insert(longer, std::move(added));
-  return is_new;
 }
 
 bool first_is_unique(const std::vector<PathCandidate>& candidates, double tolerance) {

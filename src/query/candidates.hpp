@@ -4,9 +4,13 @@
 
 namespace taut::detail {
 
+/// Are two curves between the same points one: of lengths that differ by no more than `apart`, and nowhere far from
+/// each other.
+[[nodiscard]] bool same_curve(const PathCandidate& a, const PathCandidate& b, double apart);
+
 /// Files a geodesic among the candidates, shortest first; of two that cannot be told apart, the one that is the shorter
-/// for certain. True when it was new.
-bool add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added);
+/// for certain.
+void add_candidate(std::vector<PathCandidate>& candidates, PathCandidate added);
 
 /// True when no other candidate is as short as the first, within the errors of both or `tolerance` of the length.
 [[nodiscard]] bool first_is_unique(const std::vector<PathCandidate>& candidates, double tolerance);

@@ -147,7 +147,7 @@ std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
   Complete& slot = complete_.at(static_cast<std::size_t>(level));
   if (!slot.sharp_bends) {
     const auto& neighbours = static_cast<const NeighbourIndex<3>&>(*known->neighbours);
-    slot.sharp_bends = std::make_shared<SharpBends>(*slot.cells, neighbours, context_);
+    slot.sharp_bends = std::make_shared<SharpBends>(surface_, *slot.cells, neighbours, context_);
   }
   return slot.sharp_bends;
 }

@@ -29,6 +29,9 @@ constexpr double kMarchErrorFactor = 3;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
 constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
+/// Next to a singular point errors are large as a precaution. Curves on two sides of a spike differ by less, but by
+/// more than this part of their length.
+constexpr double kSingularAlike = 1e-7;
 /// Splices of those are tried that seem longer than the shortest by no more than this part.
 constexpr double kSpliced = 0.01;
 /// A start from which Newton's method fails is shortened first, in so many segments, the points no farther from the
@@ -83,18 +86,50 @@ Vector weakest_point(const Surface& surface, const Points& curve) {
   return curve.col(weakest);
 }
 
+/// A geodesic known to a few digits.
+struct Contender {
+  PathCandidate curve;
+  double error;  // of its length, at most
+  double alike;  // another one of the same kind is the same geodesic if its length differs by no more
+
+  [[nodiscard]] double at_least() const { return curve.length - error; }
+  [[nodiscard]] double at_most() const { return curve.length + error; }
+};
+
+Contender contender(const Geodesic& geodesic) {
+  const double error = std::max(geodesic.length_error, kLeastRoughError * geodesic.length);
+  const double alike = geodesic.status == Status::ok ? geodesic.length_error : kSingularAlike * geodesic.length;
+  return {candidate_of(geodesic), error, alike};
+}
+
+/// Files a contender, unless it is known. To take one for another may hide the shortest path; to correct one twice
+/// costs microseconds.
+void add(std::vector<Contender>& contenders, Contender added) {
+  const auto same = std::ranges::find_if(contenders, [&](const Contender& known) {
+    return same_curve(known.curve, added.curve, std::min(known.alike, added.alike));
+  });
+  if (same == contenders.end()) {
+    contenders.push_back(std::move(added));
+  } else if (added.at_most() < same->at_most()) {
+    *same = std::move(added);
+  }
+}
+
 /// Of starts shortest first, how far down the list it is worth going.
 class Hope {
  public:
-  [[nodiscard]] bool is_lost(const StartPath& start) const { return start.length > shortest_ * (1 + march_error_); }
-  void found(const StartPath& start, double length) {
-    shortest_ = std::min(shortest_, length);
-    march_error_ = std::max(march_error_, kMarchErrorFactor * (start.length / length - 1));
+  /// `error`: of the starts' lengths, relative.
+  explicit Hope(double error) : error_(error) {}
+  [[nodiscard]] bool is_lost(const StartPath& start) const { return start.length > shortest_ * (1 + error_); }
+  void found(double length) { shortest_ = std::min(shortest_, length); }
+  /// The start led to a geodesic of this length.
+  void doubt(const StartPath& start, double length) {
+    error_ = std::max(error_, kMarchErrorFactor * (start.length / length - 1));
   }
 
  private:
   double shortest_ = std::numeric_limits<double>::infinity();
-  double march_error_ = kMarchError;
+  double error_;
 };
 
 }  // namespace
@@ -162,43 +197,36 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
   return corrected;
 }
 
-/// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once; those that do not
-/// converge as they are.
+/// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once, and those that do not
+/// converge as they are; for length the least that the geodesic may have, least first.
 std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& starts) {
   if (!rough_) rough_.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
-  std::vector<PathCandidate> rough;
+  std::vector<Contender> rough;
   std::vector<StartPath> failed;
-  Hope hope;
-  // The shortest is no longer than this: by those that were kept, for one may be taken for a worse known one.
-  const auto bound = [&] {
-    double least = std::numeric_limits<double>::infinity();
-    for (const PathCandidate& candidate : rough) least = std::min(least, candidate.length + candidate.length_error);
-    return least;
-  };
+  Hope hope(kMarchError);
   const auto correct_roughly = [&](const StartPath& start) {
     const NewtonResult geodesic = rough_->solve(start.points, context_);
     if (!is_geodesic(geodesic)) return false;
-    hope.found(start, geodesic.length);
-    PathCandidate candidate = candidate_of(geodesic);
-    candidate.length_error = std::max(candidate.length_error, kLeastRoughError * candidate.length);
-    add_candidate(rough, std::move(candidate));
+    hope.found(geodesic.length);
+    hope.doubt(start, geodesic.length);
+    add(rough, contender(geodesic));
     return true;
   };
   for (const StartPath& start : starts) {
     if (hope.is_lost(start)) break;
     if (!correct_roughly(start)) failed.push_back(start);
   }
-  for (const StartPath& start : splices(surface_, rough, (1 + kSpliced) * bound())) (void)correct_roughly(start);
+  std::vector<PathCandidate> curves;
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const Contender& known : rough) {
+    curves.push_back(known.curve);
+    shortest = std::min(shortest, known.at_most());
+  }
+  for (const StartPath& start : splices(surface_, curves, (1 + kSpliced) * shortest)) (void)correct_roughly(start);
   std::vector<StartPath> result;
-  const double longest = bound();
-  for (PathCandidate& candidate : rough) {
-    if (candidate.length - candidate.length_error > longest) continue;
-    result.push_back({candidate.length, std::move(candidate.points)});
-  }
-  // What did not converge roughly is tried again as it is, unless it would be longer anyway.
-  for (StartPath& start : failed) {
-    if (start.length <= (1 + kMarchError) * longest) result.push_back(std::move(start));
-  }
+  for (Contender& known : rough) result.push_back({known.at_least(), std::move(known.curve.points)});
+  for (StartPath& start : failed) result.push_back({start.length / (1 + kMarchError), std::move(start.points)});
+  std::ranges::stable_sort(result, {}, &StartPath::length);
   return result;
 }
 
@@ -209,17 +237,20 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   std::optional<Corrected> best;
   std::vector<PathCandidate> candidates;
   std::vector<const StartPath*> failed;
-  Hope hope;
+  double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
+  Hope hope(selects ? 0 : kMarchError);
   for (const StartPath& start : chosen) {
     if (!options_.all && hope.is_lost(start)) break;
     Corrected corrected = shorten(start.points, starts.cell);
     const Geodesic& geodesic = corrected.geodesic;
-    if (geodesic.status == Status::ok) {
-      hope.found(start, geodesic.length);
-      add_candidate(candidates, candidate_of(geodesic));
-    } else if (!is_geodesic(geodesic)) {
+    if (is_geodesic(geodesic)) {
+      hope.found(geodesic.length + geodesic.length_error);
+      if (!selects) hope.doubt(start, geodesic.length);
+    } else {
       failed.push_back(&start);
+      promised = std::min(promised, geodesic.length + geodesic.length_error);
     }
+    if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
     if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
   }
   // A start from which nothing came, though it is as short as what was found, may lead to the shortest path. Where
@@ -228,7 +259,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   int tries = surface_.samples() == nullptr ? kMostGentle : 0;  // seconds on a fitted surface
   for (const StartPath* start : failed) {
     const bool found = is_geodesic(best->geodesic);
-    const bool promises = tries-- > 0 && start->length <= (1 + kPromise) * best->geodesic.length;
+    const bool promises = tries-- > 0 && polyline_length(start->points) <= (1 + kPromise) * best->geodesic.length;
     if (found ? !promises : !last) break;
     std::optional<NewtonResult> gently = correct_gently(start->points);
     if (!gently) continue;
@@ -248,7 +279,8 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
     result.message = "the curve found does not lead from one end to the other; please report this";
   }
   result.seconds.correct += watch.seconds();
-  return result.status == Status::ok && result.length <= (1 + starts.doubt) * starts.paths.front().length;
+  return result.status == Status::ok && result.length <= (1 + starts.doubt) * starts.paths.front().length &&
+         result.length <= promised;
 }
 
 bool is_better(const Geodesic& a, const Geodesic& b) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -26,56 +27,56 @@ constexpr double kMostOfWay = 0.5;
 
 struct Fan {
   double length = 0;
-  std::vector<Points> rays;  // those that came to their end
+  std::vector<Points> rays;  // without points: it ran into a singular point, left the domain or was given up
+  Points tips;               // where they end, 3 x kRays; NaN where there are no points
 };
 
-/// Rays from p in all directions, without points those that ran into a singular point, left the domain or were given
-/// up.
+/// Rays from p in all directions.
 Fan trace(ExponentialMap& map, const Vector& p, const Eigen::Vector3d& normal, double length, const Context& context) {
   const Eigen::Vector3d first = normal.unitOrthogonal();
   const Eigen::Vector3d second = normal.cross(first);
-  Fan fan{length, std::vector<Points>(kRays, Points(3, 0))};
+  Fan fan{length, std::vector<Points>(kRays, Points(3, 0)),
+          Points::Constant(3, kRays, std::numeric_limits<double>::quiet_NaN())};
   for (std::size_t i = 0; i < kRays; ++i) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / kRays;
     ExponentialResult ray = map.trace(p, std::cos(angle) * first + std::sin(angle) * second, length, context);
-    if (ray.status == Status::ok && ray.points.cols() >= 2) fan.rays[i] = std::move(ray.points);
+    if (ray.status != Status::ok || ray.points.cols() < 2) continue;
+    fan.tips.col(static_cast<Index>(i)) = ray.points.rightCols(1);
+    fan.rays[i] = std::move(ray.points);
   }
   return fan;
 }
 
 bool ends_in_bends(const Fan& fan, const SharpBends& bends) {
-  const auto sharp = std::ranges::count_if(
-      fan.rays, [&](const Points& ray) { return ray.cols() > 0 && bends.along(ray.rightCols(1)); });
-  return static_cast<double>(sharp) > kMostSharp * kRays;
+  const std::vector<std::uint8_t> sharp = bends.at(fan.tips);
+  int count = 0;
+  for (std::size_t i = 0; i < kRays; ++i) count += fan.rays[i].cols() > 0 && sharp[i] != 0 ? 1 : 0;
+  return count > kMostSharp * kRays;
 }
 
 }  // namespace
 
-std::vector<StartPath> fan_out(const Surface& surface, const SurfaceCells& cells, const CellMap& map,
-                               const SharpBends& bends, const Vector& p, const DistanceField& field, double most,
-                               const Context& context) {
+std::vector<StartPath> fan_out(const Surface& surface, const Ground& ground, const Vector& p,
+                               const DistanceField& field, double most, const Context& context) {
   std::vector<StartPath> starts;
   const Eigen::Vector3d normal = normals_at(surface, p).col(0);
   if (!normal.allFinite()) return starts;
   ExponentialMap exponential(surface, {.tolerance = kRayTolerance, .max_steps = kMostRaySteps, .conjugate = false});
+  const SurfaceCells& cells = *ground.cells;
   double length = kRayCells * cells.grid().size();
   Fan fan = trace(exponential, p, normal, length, context);
-  while (ends_in_bends(fan, bends) && 2 * length <= kMostOfWay * most) {
+  while (ends_in_bends(fan, *ground.bends) && 2 * length <= kMostOfWay * most) {
     length *= 2;
     fan = trace(exponential, p, normal, length, context);
   }
-  Points tips = Points::Constant(3, kRays, std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < kRays; ++i) {
-    if (fan.rays[i].cols() > 0) tips.col(static_cast<Index>(i)) = fan.rays[i].rightCols(1);
-  }
-  const Vector beyond = distance_at(surface, cells, field, tips);
+  const Vector beyond = distance_at(surface, cells, field, fan.tips);
   const auto whole = [&](std::size_t i) {
     const double rest = beyond(static_cast<Index>(i % kRays));
     return std::isnan(rest) ? std::numeric_limits<double>::infinity() : fan.length + rest;
   };
   for (std::size_t i = 0; i < kRays; ++i) {
     if (!(whole(i) <= most) || whole(i + kRays - 1) < whole(i) || whole(i + 1) <= whole(i)) continue;
-    const Points down = descend_over(surface, cells, &map, field, tips.col(static_cast<Index>(i)));
+    const Points down = descend_over(surface, cells, ground.map.get(), field, fan.tips.col(static_cast<Index>(i)));
     if (down.cols() < 2) continue;
     const Points& ray = fan.rays[i];
     Points points(3, ray.cols() + down.cols() - 1);

@@ -1,10 +1,13 @@
 #include "query/sharp_bends.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "cells/normal_turn.hpp"
 #include "core/parallel.hpp"
+#include "march/point_normals.hpp"
 
 namespace taut::detail {
 namespace {
@@ -18,11 +21,15 @@ constexpr double kNearest = 0.3;
 constexpr double kFarthest = 1.5;
 /// The turn of nearer ones counts as if they were so far apart.
 constexpr double kShortestArm = 0.7;
+/// At a point itself: radians a cell, by a finite difference over so many cells.
+constexpr double kSharpAtPoint = 1;
+constexpr double kStep = 1e-6;
 
 }  // namespace
 
-SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neighbours, const Context& context)
-    : cells_(cells), near_(static_cast<std::size_t>(cells.num_cells()), 0) {
+SharpBends::SharpBends(const Surface& surface, const SurfaceCells& cells, const NeighbourIndex<3>& neighbours,
+                       const Context& context)
+    : surface_(surface), cells_(cells), near_(static_cast<std::size_t>(cells.num_cells()), 0) {
   const double h = cells.grid().size();
   const double gentle = std::cos(kSharp * kShortestArm);
   const auto is_sharp = [&](Index i, const std::vector<Index>& around) {
@@ -51,17 +58,36 @@ SharpBends::SharpBends(const SurfaceCells& cells, const NeighbourIndex<3>& neigh
   }
 }
 
-bool SharpBends::along(const PointsIn& curve) const {
-  std::vector<std::int32_t> cell(3);
-  std::vector<std::int32_t> last;
-  for (Index m = 0; m < curve.cols(); ++m) {
-    cells_.grid().cell_of(curve.col(m), cell);
-    if (cell == last) continue;
-    last = cell;
-    const Index i = cells_.grid().find(cell);
-    if (i != CellGrid::kNone && near_[static_cast<std::size_t>(i)] != 0) return true;
+bool SharpBends::is_near(const VectorIn& x) const {
+  std::array<std::int32_t, 3> cell;
+  cells_.grid().cell_of(x, cell);
+  const Index i = cells_.grid().find(cell);
+  return i != CellGrid::kNone && near_[static_cast<std::size_t>(i)] != 0;
+}
+
+std::vector<std::uint8_t> SharpBends::at(const PointsIn& x) const {
+  std::vector<std::uint8_t> sharp(static_cast<std::size_t>(x.cols()));
+  const Points normals = normals_at(surface_, x);
+  const double step = kStep * cells_.grid().size();
+  Points beside(3, 2 * x.cols());  // each point moved to two sides
+  for (Index j = 0; j < x.cols(); ++j) {
+    const Eigen::Vector3d normal = normals.col(j);
+    const Eigen::Vector3d side = normal.unitOrthogonal();
+    beside.col(2 * j) = x.col(j) + step * side;
+    beside.col(2 * j + 1) = x.col(j) + step * normal.cross(side);
   }
-  return false;
+  const Points turned = normals_at(surface_, beside);
+  for (Index j = 0; j < x.cols(); ++j) {
+    const double turn = (turned.middleCols<2>(2 * j).colwise() - normals.col(j)).norm();
+    const bool gentle = turn <= kSharpAtPoint * kStep;  // not where there is no normal
+    sharp[static_cast<std::size_t>(j)] = !gentle || is_near(x.col(j)) ? 1 : 0;
+  }
+  return sharp;
+}
+
+bool SharpBends::along(const PointsIn& curve) const {
+  const std::vector<std::uint8_t> sharp = at(curve);
+  return std::ranges::any_of(sharp, [](std::uint8_t is_sharp) { return is_sharp != 0; });
 }
 
 }  // namespace taut::detail

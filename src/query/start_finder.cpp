@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "core/parallel.hpp"
 #include "curve/polyline.hpp"
+#include "query/detours.hpp"
 #include "query/fan.hpp"
 #include "query/find_ways.hpp"
 #include "query/march_check.hpp"
@@ -232,7 +234,7 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
           {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
           context_);
     }
-    add_fans(ground, from_p, from_q, starts);
+    if (from_q) add_past_bends(ground, from_p, *from_q, starts);
     if (starts.paths.empty()) {
       Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
       if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
@@ -244,21 +246,22 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   return starts;
 }
 
-/// Where the surface bends sharply around an end, the ways by the fields may begin on the wrong side of a spike.
-void StartFinder::add_fans(const Ground& ground, const DistanceField& from_p,
-                           const std::optional<DistanceField>& from_q, Starts& starts) const {
-  if (!from_q || starts.paths.empty() || !ground.bends) return;
+/// Where the surface bends sharply, the ways by the fields may pass on the wrong side of a spike: more ways, that leave
+/// the ends there in other directions or step aside on the way.
+void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
+                                 Starts& starts) const {
+  if (starts.paths.empty() || !ground.bends) return;
   const double most = (1 + kExcess) * starts.paths.front().length;
-  const auto add = [&](const DistanceField& from, const DistanceField& to, bool backwards) {
-    const Vector end = from.sources.col(0);
-    if (!ground.bends->along(end)) return;
-    for (StartPath& start : fan_out(surface_, *ground.cells, *ground.map, *ground.bends, end, to, most, context_)) {
-      if (backwards) start.points = start.points.rowwise().reverse().eval();
-      starts.paths.push_back(std::move(start));
-    }
-  };
-  add(from_p, *from_q, false);
-  add(*from_q, from_p, true);
+  const Vector p = from_p.sources.col(0);
+  const Vector q = from_q.sources.col(0);
+  const auto add = [&](std::vector<StartPath> more) { std::ranges::move(more, std::back_inserter(starts.paths)); };
+  add(detours(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
+  if (ground.bends->along(p)) add(fan_out(surface_, ground, p, from_q, most, context_));
+  if (ground.bends->along(q)) {
+    std::vector<StartPath> back = fan_out(surface_, ground, q, from_p, most, context_);
+    for (StartPath& start : back) start.points = start.points.rowwise().reverse().eval();
+    add(std::move(back));
+  }
   std::ranges::stable_sort(starts.paths, {}, &StartPath::length);
 }
 

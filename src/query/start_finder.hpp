@@ -7,6 +7,7 @@
 
 #include "march/march_over.hpp"
 #include "query/cell_levels.hpp"
+#include "query/ground.hpp"
 #include "taut/march/barrier.hpp"
 #include "taut/march/distance_field.hpp"
 #include "taut/march/distance_table.hpp"
@@ -77,19 +78,13 @@ class StartFinder {
   };
   [[nodiscard]] TableError measure_error(const DistanceTable& table) const;
   [[nodiscard]] bool seeks_rivals() const;
-  /// Cells to march over, and what is known of them if they are complete.
-  struct Ground {
-    std::shared_ptr<SurfaceCells> cells;
-    std::shared_ptr<const CellMap> map;
-    std::shared_ptr<const SharpBends> bends;
-  };
   /// Ways by marching on these cells, with all rivals no longer than `longest`.
   [[nodiscard]] Starts find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const;
   /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
   [[nodiscard]] Starts continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
                                    std::optional<DistanceField> from_q) const;
-  void add_fans(const Ground& ground, const DistanceField& from_p, const std::optional<DistanceField>& from_q,
-                Starts& starts) const;
+  void add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
+                      Starts& starts) const;
   /// The distances from `source`, as far as paths to `target` need them that are no longer than `longest`.
   [[nodiscard]] DistanceField march_towards(const Ground& ground, const Vector& source, const Vector& target,
                                             double longest) const;
