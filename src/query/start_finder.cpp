@@ -9,11 +9,11 @@
 
 #include "core/parallel.hpp"
 #include "curve/polyline.hpp"
-#include "query/detours.hpp"
 #include "query/fan.hpp"
 #include "query/find_ways.hpp"
 #include "query/march_check.hpp"
 #include "query/normal_turns.hpp"
+#include "query/side_steps.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
@@ -46,6 +46,8 @@ constexpr double kMostTableDoubt = 0.03;
 /// Where the table bounds the distance, marches keep to the cells that paths no longer than the rivals run through, and
 /// so many more.
 constexpr double kMarginCells = 2;
+/// Where the fields know no way, none longer than so many diagonals of the box is sought.
+constexpr double kMostDiagonals = 2;
 /// A table is made when it costs less than this part of marching from both ends of each pair.
 constexpr double kWorthwhile = 0.2;
 
@@ -224,21 +226,23 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   SurfaceCells& cells = *ground.cells;
   Starts starts;
   starts.cell = cells.grid().size();
+  const Vector p = from_p.sources.col(0);
   const double distance = distance_at(surface_, cells, from_p, q)(0);
-  if (std::isfinite(distance)) {
-    starts.rivals_sought = seeks_rivals();
-    if (seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell)) {
-      if (!from_q) from_q = march_towards(ground, q, from_p.sources.col(0), kInfinity);
-      starts.paths = start_paths_over(
-          surface_, cells, ground.map.get(), from_p, *from_q,
-          {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
-          context_);
-    }
-    if (from_q) add_past_bends(ground, from_p, *from_q, starts);
-    if (starts.paths.empty()) {
-      Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
-      if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
-    }
+  const bool arrives = std::isfinite(distance);
+  const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell);
+  starts.rivals_sought = arrives && seeks_rivals();
+  const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(ends(p, q));
+  if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
+  if (rivals) {
+    starts.paths = start_paths_over(
+        surface_, cells, ground.map.get(), from_p, *from_q,
+        {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
+        context_);
+  }
+  if ((rivals || at_spike) && ground.bends) add_past_bends(ground, from_p, *from_q, starts);
+  if (arrives && starts.paths.empty()) {
+    Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
+    if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
   }
   if (starts.paths.empty()) starts.barrier = find_barrier(cells, from_p, q);
   starts.cells = ground.cells;
@@ -246,16 +250,16 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   return starts;
 }
 
-/// Where the surface bends sharply, the ways by the fields may pass on the wrong side of a spike: more ways, that leave
-/// the ends there in other directions or step aside on the way.
+/// Where the surface bends sharply, the ways by the fields may pass on the wrong side of a spike, and from its tip the
+/// march may come to nothing: more ways, that leave the ends there in all directions or step aside on the way.
 void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
                                  Starts& starts) const {
-  if (starts.paths.empty() || !ground.bends) return;
-  const double most = (1 + kExcess) * starts.paths.front().length;
   const Vector p = from_p.sources.col(0);
   const Vector q = from_q.sources.col(0);
+  const bool found = !starts.paths.empty();
+  const double most = found ? (1 + kExcess) * starts.paths.front().length : kMostDiagonals * levels_.box().diagonal();
   const auto add = [&](std::vector<StartPath> more) { std::ranges::move(more, std::back_inserter(starts.paths)); };
-  add(detours(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
+  if (found) add(side_steps(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
   if (ground.bends->along(p)) add(fan_out(surface_, ground, p, from_q, most, context_));
   if (ground.bends->along(q)) {
     std::vector<StartPath> back = fan_out(surface_, ground, q, from_p, most, context_);

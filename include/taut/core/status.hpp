@@ -8,7 +8,8 @@ namespace taut {
 enum class Status {
   ok,              ///< converged to the tolerance asked for
   not_converged,   ///< the best iterate is returned, its residuals and `length_error` say how good it is
-  disconnected,    ///< the two points lie on different components of the surface
+  disconnected,    ///< the two points lie on different components of the surface, or seem to: the message says
+                   ///< what is proved
   left_domain,     ///< the curve leaves the surface's domain (past the edge of a scan, or cut off by an inequality)
   rank_deficient,  ///< the curve runs into a point where the Jacobian loses rank
   cancelled,       ///< stopped by the caller

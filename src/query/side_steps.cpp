@@ -1,4 +1,4 @@
-#include "query/detours.hpp"
+#include "query/side_steps.hpp"
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -50,9 +50,9 @@ std::vector<Vector> aside(ExponentialMap& map, const Surface& surface, const Poi
 
 }  // namespace
 
-std::vector<StartPath> detours(const Surface& surface, const Ground& ground, const Points& way,
-                               const DistanceField& from_p, const DistanceField& from_q, double most,
-                               const Context& context) {
+std::vector<StartPath> side_steps(const Surface& surface, const Ground& ground, const Points& way,
+                                  const DistanceField& from_p, const DistanceField& from_q, double most,
+                                  const Context& context) {
   std::vector<StartPath> starts;
   const SurfaceCells& cells = *ground.cells;
   ExponentialMap map(surface, {.tolerance = kRayTolerance, .max_steps = kMostRaySteps, .conjugate = false});
