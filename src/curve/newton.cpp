@@ -63,6 +63,15 @@ NewtonResult NewtonSolver::solve(const PointsIn& start, const Context& context) 
   return backend_->solve(start, context);
 }
 
+NewtonResult NewtonSolver::refine(const SpectralCurve& curve, const Context& context) {
+  if (curve.dim() != backend_->dim()) {
+    throw InvalidArgument("the curve has dimension " + std::to_string(curve.dim()) + ", the surface has " +
+                          std::to_string(backend_->dim()));
+  }
+  if (!curve.nodes().allFinite()) throw InvalidArgument("a node of the curve is not finite");
+  return backend_->refine(curve, context);
+}
+
 NewtonResult correct_newton(const Surface& surface, const PointsIn& start, const NewtonOptions& options,
                             const Context& context) {
   return NewtonSolver(surface, options).solve(start, context);

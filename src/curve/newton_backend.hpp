@@ -12,6 +12,7 @@ class NewtonSolver::Backend {
   virtual ~Backend() = default;
   [[nodiscard]] virtual Index dim() const = 0;
   virtual NewtonResult solve(const PointsIn& start, const Context& context) = 0;
+  virtual NewtonResult refine(const SpectralCurve& curve, const Context& context) = 0;
 };
 
 namespace detail {

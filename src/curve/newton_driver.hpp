@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -39,11 +40,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   [[nodiscard]] Index dim() const override { return surface_.dim(); }
 
   NewtonResult solve(const PointsIn& start, const Context& context) override {
-    kernel_.reset_counters();
-    checker_.reset_counters();
-    nonsmooth_ = false;
-    context_ = &context;
-    scale_ = start.cwiseAbs().maxCoeff();
+    begin(start, context);
     const Points path = without_repeats(start);
     const double length = polyline_length(path);
     NewtonResult result;
@@ -53,6 +50,10 @@ class NewtonDriver : public NewtonSolver::Backend {
       outcome = solve_coarse(path, length, turn);
       if (outcome == Relaxation::collapsed && path.col(0) == path.col(path.cols() - 1)) return of_a_point(start);
       if (outcome == Relaxation::converged || outcome == Relaxation::saddle || outcome == Relaxation::stalled) {
+        const Nodes coarse = kernel_.nodes();
+        std::vector<double> breaks(lengths_.size() + 1, 0.0);
+        std::partial_sum(lengths_.begin(), lengths_.end(), breaks.begin() + 1);
+        start_fine([&](double t) { return cubic(coarse, breaks, t); });
         outcome = solve_fine();
       } else {
         checker_.inspect(*evaluator_, kernel_, check_);
@@ -61,6 +62,32 @@ class NewtonDriver : public NewtonSolver::Backend {
       if (kernel_.num_iterations() >= options_.max_iterations) break;
     }
     finish(start, outcome, result);
+    return result;
+  }
+
+  NewtonResult refine(const SpectralCurve& curve, const Context& context) override {
+    const Points& nodes = curve.nodes();
+    Points ends(nodes.rows(), 2);
+    ends << nodes.col(0), nodes.rightCols<1>();
+    begin(nodes, context);
+    NewtonResult result;
+    if (curve.period() <= 1e-15 * scale_) return of_a_point(ends);
+    // The nodes as a polyline, to see how the normal turns from one to the next.
+    const ReferenceElement& element = ReferenceElement::of_degree(curve.degree());
+    lengths_.clear();
+    for (const double h : curve.lengths()) {
+      for (int i = 0; i < curve.degree(); ++i) lengths_.push_back(h * (element.node(i + 1) - element.node(i)) / 2);
+    }
+    kernel_.set_mesh(1, lengths_);
+    kernel_.nodes() = nodes;
+    Relaxation outcome = kernel_.relax(*evaluator_, {.energy = 1, .off_surface = scale_, .max_iterations = 0}, context);
+    if (outcome == Relaxation::converged || outcome == Relaxation::stalled) {
+      start_fine([&](double t) -> VectorD { return curve.point(t); });
+      outcome = solve_fine();
+    } else {
+      checker_.inspect(*evaluator_, kernel_, check_);
+    }
+    finish(ends, outcome, result);
     return result;
   }
 
@@ -85,6 +112,14 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.index = 0;
     result.curve = SpectralCurve(1, {1.0}, result.points);
     return result;
+  }
+
+  void begin(const PointsIn& start, const Context& context) {
+    kernel_.reset_counters();
+    checker_.reset_counters();
+    nonsmooth_ = false;
+    context_ = &context;
+    scale_ = start.cwiseAbs().maxCoeff();
   }
 
   // The coarse curve.
@@ -188,7 +223,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     return options_.tolerance > 1e-6 ? 4 : System::high_degree(surface_.dim() - surface_.codim());
   }
 
-  void start_fine(int p) {
+  // Elements for the polyline in the kernel, their nodes by `point` (of the polyline's parameter).
+  template <class Point>
+  void start_fine(const Point& point) {
+    const int p = first_degree();
     measure_turning();
     double turn = 0;
     std::vector<double> density(turning_.size());
@@ -200,19 +238,15 @@ class NewtonDriver : public NewtonSolver::Backend {
     const Index m = std::clamp<Index>(wanted, 1, options_.max_elements);
     std::vector<double> lengths = equidistribute(lengths_, density, m);
     // Arc length as parameter: scale to the length found.
-    const Nodes coarse = kernel_.nodes();
-    std::vector<double> breaks(lengths_.size() + 1, 0.0);
-    for (std::size_t e = 0; e < lengths_.size(); ++e) breaks[e + 1] = breaks[e] + lengths_[e];
     const double stretch = kernel_.length() / kernel_.period();
     const ReferenceElement& element = ReferenceElement::of_degree(p);
+    const Nodes coarse = kernel_.nodes();
     Nodes nodes(coarse.rows(), m * p + 1);
     nodes.col(0) = coarse.col(0);
     double left = 0;
     for (Index e = 0; e < m; ++e) {
       const double h = lengths[static_cast<std::size_t>(e)];
-      for (int i = 1; i <= p; ++i) {
-        nodes.col(e * p + i) = cubic(coarse, breaks, left + h * (element.node(i) + 1) / 2);
-      }
+      for (int i = 1; i <= p; ++i) nodes.col(e * p + i) = point(left + h * (element.node(i) + 1) / 2);
       left += h;
     }
     nodes.col(m * p) = coarse.col(coarse.cols() - 1);
@@ -246,7 +280,6 @@ class NewtonDriver : public NewtonSolver::Backend {
   [[nodiscard]] double surface_tolerance() const { return 3e-3 * std::sqrt(options_.tolerance); }  // relative to length
 
   Relaxation solve_fine() {
-    start_fine(first_degree());
     Relaxation outcome = Relaxation::converged;
     double before = std::numeric_limits<double>::infinity();
     double weakest = 1;

@@ -20,6 +20,10 @@ constexpr Index kStations = 16;
 
 }  // namespace
 
+PathCandidate candidate_of(const Geodesic& geodesic) {
+  return {geodesic.length, geodesic.length_error, geodesic.locally_shortest, geodesic.points};
+}
+
 bool same_curve(const PathCandidate& a, const PathCandidate& b, double apart) {
   if (std::abs(a.length - b.length) > apart + kRounding * a.length) return false;
   return (at_equal_parts(a.points, kStations) - at_equal_parts(b.points, kStations)).colwise().norm().maxCoeff() <=

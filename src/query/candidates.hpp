@@ -4,6 +4,8 @@
 
 namespace taut::detail {
 
+[[nodiscard]] PathCandidate candidate_of(const Geodesic& geodesic);
+
 /// Are two curves between the same points one: of lengths that differ by no more than `apart`, and nowhere far from
 /// each other.
 [[nodiscard]] bool same_curve(const PathCandidate& a, const PathCandidate& b, double apart);

@@ -11,6 +11,7 @@
 #include "curve/normal_frame.hpp"
 #include "curve/polyline.hpp"
 #include "query/candidates.hpp"
+#include "query/contender.hpp"
 #include "query/shortening.hpp"
 #include "query/splices.hpp"
 #include "query/stopwatch.hpp"
@@ -28,10 +29,6 @@ constexpr double kMarchError = 0.1;
 constexpr double kMarchErrorFactor = 3;
 /// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
 constexpr double kRoughTolerance = 1e-3;
-constexpr double kLeastRoughError = 1e-4;  // taken to be no better than this
-/// Next to a singular point errors are large as a precaution. Curves on two sides of a spike differ by less, but by
-/// more than this part of their length.
-constexpr double kSingularAlike = 1e-7;
 /// Splices of those are tried that seem longer than the shortest by no more than this part.
 constexpr double kSpliced = 0.01;
 /// A start from which Newton's method fails is shortened first, in so many segments, the points no farther from the
@@ -43,10 +40,6 @@ constexpr double kPromise = 0.01;
 constexpr int kMostGentle = 4;
 /// Points of more coordinates are not printed.
 constexpr Index kMostPrinted = 16;
-
-PathCandidate candidate_of(const Geodesic& geodesic) {
-  return {geodesic.length, geodesic.length_error, geodesic.locally_shortest, geodesic.points};
-}
 
 /// A geodesic, be it one through a singular point.
 bool is_geodesic(const Geodesic& geodesic) {
@@ -86,46 +79,15 @@ Vector weakest_point(const Surface& surface, const Points& curve) {
   return curve.col(weakest);
 }
 
-/// A geodesic known to a few digits.
-struct Contender {
-  PathCandidate curve;
-  double error;  // of its length, at most
-  double alike;  // another one of the same kind is the same geodesic if its length differs by no more
-
-  [[nodiscard]] double at_least() const { return curve.length - error; }
-  [[nodiscard]] double at_most() const { return curve.length + error; }
-};
-
-Contender contender(const Geodesic& geodesic) {
-  const double error = std::max(geodesic.length_error, kLeastRoughError * geodesic.length);
-  const double alike = geodesic.status == Status::ok ? geodesic.length_error : kSingularAlike * geodesic.length;
-  return {candidate_of(geodesic), error, alike};
-}
-
-/// Files a contender, unless it is known. To take one for another may hide the shortest path; to correct one twice
-/// costs microseconds.
-void add(std::vector<Contender>& contenders, Contender added) {
-  const auto same = std::ranges::find_if(contenders, [&](const Contender& known) {
-    return same_curve(known.curve, added.curve, std::min(known.alike, added.alike));
-  });
-  if (same == contenders.end()) {
-    contenders.push_back(std::move(added));
-  } else if (added.at_most() < same->at_most()) {
-    *same = std::move(added);
-  }
-}
-
 /// Of starts shortest first, how far down the list it is worth going.
 class Hope {
  public:
   /// `error`: of the starts' lengths, relative.
   explicit Hope(double error) : error_(error) {}
-  [[nodiscard]] bool is_lost(const StartPath& start) const { return start.length > shortest_ * (1 + error_); }
+  [[nodiscard]] bool is_lost(double length) const { return length > shortest_ * (1 + error_); }
   void found(double length) { shortest_ = std::min(shortest_, length); }
-  /// The start led to a geodesic of this length.
-  void doubt(const StartPath& start, double length) {
-    error_ = std::max(error_, kMarchErrorFactor * (start.length / length - 1));
-  }
+  /// A start that promised one length has led to another.
+  void doubt(double promised, double length) { error_ = std::max(error_, kMarchErrorFactor * (promised / length - 1)); }
 
  private:
   double shortest_ = std::numeric_limits<double>::infinity();
@@ -168,14 +130,16 @@ void Corrector::explain(Corrected& corrected) const {
   }
 }
 
-Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
+Corrector::Corrected Corrector::shorten(const Choice& choice, double cell) {
+  const Points& start = choice.start;
   Corrected corrected{{}, {}, start};
   Geodesic& geodesic = corrected.geodesic;
   const double start_length = polyline_length(start);
   switch (options_.method) {
     case CorrectionMethod::newton:
       if (!newton_) newton_.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
-      geodesic = newton_->solve(start, context_);
+      if (choice.rough) geodesic = newton_->refine(*choice.rough, context_);
+      if (!choice.rough || !is_geodesic(geodesic)) geodesic = newton_->solve(start, context_);
       break;
     case CorrectionMethod::flow:
       geodesic =
@@ -198,56 +162,61 @@ Corrector::Corrected Corrector::shorten(const Points& start, double cell) {
 }
 
 /// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once, and those that do not
-/// converge as they are; for length the least that the geodesic may have, least first.
-std::vector<StartPath> Corrector::contenders(const std::vector<StartPath>& starts) {
+/// converge as they are; least first.
+std::vector<Corrector::Choice> Corrector::choose(const std::vector<StartPath>& starts) {
   if (!rough_) rough_.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
-  std::vector<Contender> rough;
-  std::vector<StartPath> failed;
+  std::vector<Contender> contenders;
+  std::vector<Choice> choices;
   Hope hope(kMarchError);
   const auto correct_roughly = [&](const StartPath& start) {
-    const NewtonResult geodesic = rough_->solve(start.points, context_);
+    NewtonResult geodesic = rough_->solve(start.points, context_);
     if (!is_geodesic(geodesic)) return false;
     hope.found(geodesic.length);
-    hope.doubt(start, geodesic.length);
-    add(rough, contender(geodesic));
+    hope.doubt(start.length, geodesic.length);
+    add_contender(contenders, contender(start.points, std::move(geodesic)));
     return true;
   };
   for (const StartPath& start : starts) {
-    if (hope.is_lost(start)) break;
-    if (!correct_roughly(start)) failed.push_back(start);
+    if (hope.is_lost(start.length)) break;
+    if (!correct_roughly(start)) choices.push_back({start.length / (1 + kMarchError), start.points, std::nullopt});
   }
-  std::vector<PathCandidate> curves;
+  std::vector<PathCandidate> geodesics;
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Contender& known : rough) {
-    curves.push_back(known.curve);
+  for (const Contender& known : contenders) {
+    geodesics.push_back(known.geodesic);
     shortest = std::min(shortest, known.at_most());
   }
-  for (const StartPath& start : splices(surface_, curves, (1 + kSpliced) * shortest)) (void)correct_roughly(start);
-  std::vector<StartPath> result;
-  for (Contender& known : rough) result.push_back({known.at_least(), std::move(known.curve.points)});
-  for (StartPath& start : failed) result.push_back({start.length / (1 + kMarchError), std::move(start.points)});
-  std::ranges::stable_sort(result, {}, &StartPath::length);
-  return result;
+  for (const StartPath& start : splices(surface_, geodesics, (1 + kSpliced) * shortest)) (void)correct_roughly(start);
+  for (Contender& known : contenders) {
+    choices.push_back({known.at_least(), std::move(known.start), std::move(known.curve)});
+  }
+  std::ranges::stable_sort(choices, {}, &Choice::length);
+  return choices;
 }
 
 bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   const Stopwatch watch;
   const bool selects = options_.method == CorrectionMethod::newton && !options_.all && starts.paths.size() > 1;
-  const std::vector<StartPath> chosen = selects ? contenders(starts.paths) : starts.paths;
+  std::vector<Choice> choices;
+  if (selects) {
+    choices = choose(starts.paths);
+  } else {
+    for (const StartPath& start : starts.paths) choices.push_back({start.length, start.points, std::nullopt});
+  }
   std::optional<Corrected> best;
   std::vector<PathCandidate> candidates;
-  std::vector<const StartPath*> failed;
+  std::vector<const Choice*> failed;
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
   Hope hope(selects ? 0 : kMarchError);
-  for (const StartPath& start : chosen) {
-    if (!options_.all && hope.is_lost(start)) break;
-    Corrected corrected = shorten(start.points, starts.cell);
+  for (const Choice& choice : choices) {
+    if (!options_.all && hope.is_lost(choice.length)) break;
+    Corrected corrected = shorten(choice, starts.cell);
     const Geodesic& geodesic = corrected.geodesic;
     if (is_geodesic(geodesic)) {
       hope.found(geodesic.length + geodesic.length_error);
-      if (!selects) hope.doubt(start, geodesic.length);
+      if (!selects) hope.doubt(choice.length, geodesic.length);
     } else {
-      failed.push_back(&start);
+      failed.push_back(&choice);
       promised = std::min(promised, geodesic.length + geodesic.length_error);
     }
     if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
@@ -257,15 +226,15 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   // nothing was found, finer cells are the better help.
   if (options_.method != CorrectionMethod::newton) failed.clear();
   int tries = surface_.samples() == nullptr ? kMostGentle : 0;  // seconds on a fitted surface
-  for (const StartPath* start : failed) {
+  for (const Choice* choice : failed) {
     const bool found = is_geodesic(best->geodesic);
-    const bool promises = tries-- > 0 && polyline_length(start->points) <= (1 + kPromise) * best->geodesic.length;
+    const bool promises = tries-- > 0 && polyline_length(choice->start) <= (1 + kPromise) * best->geodesic.length;
     if (found ? !promises : !last) break;
-    std::optional<NewtonResult> gently = correct_gently(start->points);
+    std::optional<NewtonResult> gently = correct_gently(choice->start);
     if (!gently) continue;
     if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));
     if (!is_better(*gently, best->geodesic)) continue;
-    best = Corrected{*std::move(gently), {}, start->points};
+    best = Corrected{*std::move(gently), {}, choice->start};
     explain(*best);
   }
   static_cast<Geodesic&>(result) = std::move(best->geodesic);

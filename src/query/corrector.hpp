@@ -7,6 +7,7 @@
 #include "query/start_finder.hpp"
 #include "query/strand.hpp"
 #include "taut/curve/newton.hpp"
+#include "taut/curve/spectral_curve.hpp"
 #include "taut/query/path.hpp"
 
 namespace taut::detail {
@@ -31,8 +32,15 @@ class Corrector {
   [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start);
   /// Fills the message.
   void explain(Corrected& corrected) const;
-  [[nodiscard]] Corrected shorten(const Points& start, double cell);
-  [[nodiscard]] std::vector<StartPath> contenders(const std::vector<StartPath>& starts);
+  /// A start to be corrected to the end.
+  struct Choice {
+    double length;  // about that of the geodesic; where it is known to a few digits, the least that it may be
+    Points start;
+    std::optional<SpectralCurve> rough;  // the geodesic, to a few digits
+  };
+
+  [[nodiscard]] Corrected shorten(const Choice& choice, double cell);
+  [[nodiscard]] std::vector<Choice> choose(const std::vector<StartPath>& starts);
 
   const Surface& surface_;
   const PathOptions& options_;

@@ -40,6 +40,10 @@ class NewtonSolver {
   /// for a wrong shape or a coordinate that is not finite, Cancelled; every mathematical outcome is in the status.
   [[nodiscard]] NewtonResult solve(const PointsIn& start, const Context& context = {});
 
+  /// The same from a curve close to a geodesic, such as one that was found to a looser tolerance: without the polyline
+  /// that takes a far start there. Its ends must lie on the surface.
+  [[nodiscard]] NewtonResult refine(const SpectralCurve& curve, const Context& context = {});
+
   class Backend;
 
  private:
