@@ -105,6 +105,9 @@ TEST(Newton, RefusesWhatIsNoPath) {
   EXPECT_THROW((void)correct_newton(sphere, start.topRows(2)), InvalidArgument);
   EXPECT_THROW((void)correct_newton(sphere, start, {.tolerance = 0}), InvalidArgument);
   EXPECT_THROW((void)correct_newton(sphere, start, {.max_iterations = 0}), InvalidArgument);
+  NewtonSolver solver(sphere);
+  EXPECT_THROW((void)solver.refine(SpectralCurve()), InvalidArgument);
+  EXPECT_THROW((void)solver.refine(SpectralCurve(1, {1.0}, Points::Zero(2, 2))), InvalidArgument);
   start(1, 2) = std::nan("");
   EXPECT_THROW((void)correct_newton(sphere, start), InvalidArgument);
 }

@@ -84,6 +84,30 @@ TEST(NewtonReferences, MeetEveryToleranceWithAnHonestEstimate) {
   }
 }
 
+TEST(NewtonReferences, ARoughGeodesicIsRefined) {
+  const auto rows = references("distance");
+  unsigned seed = 0;
+  Index from_start = 0;
+  Index from_rough = 0;
+  for (const Reference& row : rows) {
+    SCOPED_TRACE(row.surface + " length " + std::to_string(row.length));
+    const Surface& surface = surfaces().at(row.surface);
+    const Points start = start_of(row, 0.003, ++seed);
+    const NewtonResult rough = correct_newton(surface, start, {.tolerance = 1e-3});
+    NewtonSolver solver(surface, {.tolerance = 1e-12});
+    const NewtonResult path = solver.refine(rough.curve);
+    ASSERT_EQ(path.status, Status::ok) << path.reason;
+    EXPECT_LE(std::abs(path.length - row.length), 1e-12 * row.length + 2e-15);
+    EXPECT_LE(std::abs(path.length - row.length), path.length_error + 5e-16);
+    EXPECT_TRUE(path.locally_shortest);
+    EXPECT_EQ(path.points.col(0), start.col(0));
+    EXPECT_EQ(path.points.rightCols<1>(), start.rightCols<1>());
+    from_rough += path.num_evaluated;
+    from_start += solver.solve(start).num_evaluated;
+  }
+  EXPECT_LT(from_rough, from_start);
+}
+
 TEST(NewtonReferences, TheCertificateTurnsAtTheConjugatePoint) {
   for (const Reference& row : references("conjugate")) {
     SCOPED_TRACE(row.surface + " conjugate at " + std::to_string(row.length));
