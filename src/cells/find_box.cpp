@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "cells/crossed.hpp"
+#include "cells/crossing_pool.hpp"
 #include "cells/refine.hpp"
 #include "surface/describe.hpp"
 #include "taut/cells/cell_grid.hpp"
@@ -34,19 +36,15 @@ Box shrink_once(const Surface& surface, const Box& box, const Context& context) 
   const double half_width = 0.55 * box.extent().maxCoeff() + std::numeric_limits<double>::min();
   Vector origin = 0.5 * (box.lower + box.upper);
   for (Index a = 0; a < d; ++a) origin(a) -= half_width * (1 + 0.08 * std::sin(static_cast<double>(a + 1)));
-  CrossingTest test(surface.with_box(box), origin, std::ldexp(2 * half_width, -kLevelsPerRound));
-  detail::Refiner refiner(test, d);
+  detail::CrossingPool pool(surface.with_box(box), origin, std::ldexp(2 * half_width, -kLevelsPerRound));
   std::vector<std::int32_t> cells(static_cast<std::size_t>(d), 0);
-  std::vector<std::int32_t> tested;
   int level = kLevelsPerRound;
-  refiner.refine(cells, level, level, tested);
+  std::vector<std::int32_t> tested = detail::crossed(pool, d, cells, level, context);
   while (level > 0 && static_cast<Index>(tested.size()) / d <= kMaxCellsPerRound) {
-    context.check_cancelled();
     cells.clear();
     detail::append_halves(d, tested.data(), static_cast<Index>(tested.size()) / d, cells);
-    tested.clear();
     --level;
-    refiner.refine(cells, level, level, tested);
+    tested = detail::crossed(pool, d, cells, level, context);
   }
   if (tested.empty()) return {};
   const CellGrid grid(origin, std::ldexp(2 * half_width, level - kLevelsPerRound));

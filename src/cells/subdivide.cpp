@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/crossed.hpp"
 #include "cells/crossing_pool.hpp"
 #include "cells/memory_guard.hpp"
 #include "cells/refine.hpp"
@@ -101,24 +102,14 @@ CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, cons
   context.report("cells", 0);
 
   // The first levels one after the other, until there is enough to share.
-  int level = 0;
-  Cells coarse;
-  {
-    const detail::CrossingPool::Loan test(pool);
-    level = first_level(box, size, test->has_bounds());
-    detail::Refiner refiner(*test, d);
-    Cells tested;
-    refiner.refine(cover(grid, box, level), level, level, tested);
-    coarse.swap(tested);
-    while (level > 0 && !coarse.empty() && static_cast<Index>(coarse.size()) / d < kCoarseCells) {
-      context.check_cancelled();
-      Cells halves;
-      detail::append_halves(d, coarse.data(), static_cast<Index>(coarse.size()) / d, halves);
-      tested.clear();
-      --level;
-      refiner.refine(halves, level, level, tested);
-      coarse.swap(tested);
-    }
+  // The first levels one after the other, until there is enough to share.
+  int level = first_level(box, size, detail::CrossingPool::Loan(pool)->has_bounds());
+  Cells coarse = detail::crossed(pool, d, cover(grid, box, level), level, context);
+  while (level > 0 && !coarse.empty() && static_cast<Index>(coarse.size()) / d < kCoarseCells) {
+    Cells halves;
+    detail::append_halves(d, coarse.data(), static_cast<Index>(coarse.size()) / d, halves);
+    --level;
+    coarse = detail::crossed(pool, d, halves, level, context);
   }
   const Index num_coarse = static_cast<Index>(coarse.size()) / d;
   check_estimate(num_coarse, level, d, surface.codim(), size, limit);
