@@ -168,17 +168,23 @@ std::vector<Corrector::Choice> Corrector::choose(const std::vector<StartPath>& s
   std::vector<Contender> contenders;
   std::vector<Choice> choices;
   Hope hope(kMarchError);
-  const auto correct_roughly = [&](const StartPath& start) {
+  // What a curve that did not become a geodesic may yet come to, at least, if it came to rest.
+  const auto correct_roughly = [&](const StartPath& start) -> std::optional<double> {
     NewtonResult geodesic = rough_->solve(start.points, context_);
-    if (!is_geodesic(geodesic)) return false;
+    if (!is_geodesic(geodesic)) {
+      const bool at_rest = std::isfinite(geodesic.length_error);
+      return at_rest ? geodesic.length - geodesic.length_error : std::numeric_limits<double>::infinity();
+    }
     hope.found(geodesic.length);
     hope.doubt(start.length, geodesic.length);
     add_contender(contenders, contender(start.points, std::move(geodesic)));
-    return true;
+    return std::nullopt;
   };
   for (const StartPath& start : starts) {
     if (hope.is_lost(start.length)) break;
-    if (!correct_roughly(start)) choices.push_back({start.length / (1 + kMarchError), start.points, std::nullopt});
+    const std::optional<double> at_least = correct_roughly(start);
+    if (at_least)
+      choices.push_back({std::min(*at_least, start.length / (1 + kMarchError)), start.points, std::nullopt});
   }
   std::vector<PathCandidate> geodesics;
   double shortest = std::numeric_limits<double>::infinity();

@@ -403,6 +403,22 @@ TEST_P(NearTheApex, OfAConeWaysAreTheShorterOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Openings, NearTheApex, testing::Values(0.1, 0.5, 2.0));
 
+// Geodesics from next to the tip of a needle of 1.7 degrees leave in directions between which others wind round it once
+// more or less. The truth: the cone unrolled into the plane.
+TEST(Rivals, ANeedleIsNotWoundRoundOnceTooOften) {
+  PathSolver solver(parse_surface("x^2 + y^2 = 0.0009*z^2"));
+  const PathResult first =
+      solver.solve(Eigen::Vector3d(-0.000477096302837643, -0.0010021116732567452, 0.03699622635198806),
+                   Eigen::Vector3d(-0.02160807565410617, 0.028750281228845882, 1.1988362895423508));
+  ASSERT_EQ(first.status, Status::ok) << first.message;
+  EXPECT_NEAR(first.length, 1.1624351017642462, 2e-9);
+  const PathResult second =
+      solver.solve(Eigen::Vector3d(0.002900137651461288, -0.0009559736731239316, 0.10178781885825836),
+                   Eigen::Vector3d(-0.040888502632351394, 0.03690327060984079, 1.8359741674589563));
+  ASSERT_EQ(second.status, Status::ok) << second.message;
+  EXPECT_NEAR(second.length, 1.7353264577667942, 2e-9);
+}
+
 struct Hidden {
   const char* surface;
   Eigen::Vector3d from, to, via;
