@@ -27,7 +27,7 @@ constexpr double kMostGrowth = 1.1;
 /// times as wrong as those of the ways corrected before.
 constexpr double kMarchError = 0.1;
 constexpr double kMarchErrorFactor = 3;
-/// Of several starts, those are corrected to the end that are shortest after a correction to this tolerance.
+/// Several starts are first corrected to this tolerance, to see which may be the shortest.
 constexpr double kRoughTolerance = 1e-3;
 /// Splices of those are tried that seem longer than the shortest by no more than this part.
 constexpr double kSpliced = 0.01;

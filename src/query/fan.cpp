@@ -10,7 +10,7 @@
 
 #include "march/march_over.hpp"
 #include "march/point_normals.hpp"
-#include "taut/core/error.hpp"
+#include "query/scout.hpp"
 #include "taut/curve/exponential_map.hpp"
 
 namespace taut::detail {
@@ -22,8 +22,6 @@ constexpr double kTurn = 2 * std::numbers::pi;
 constexpr Index kRays = 24;
 constexpr double kMostApart = 1;
 constexpr int kRefinements = 2;
-constexpr double kRayTolerance = 1e-3;
-constexpr int kMostRaySteps = 30;  // a ray that winds round a spike more often is given up
 /// Length of the rays, in cells: doubled while more than this part of them ends where the surface bends sharply, as
 /// long as they are no longer than that part of the shortest way.
 constexpr double kRayCells = 3;
@@ -44,7 +42,7 @@ class Fan {
         first_(normal.unitOrthogonal()),
         second_(normal.cross(first_)),
         context_(context),
-        map_(surface, {.tolerance = kRayTolerance, .max_steps = kMostRaySteps, .conjugate = false}) {}
+        map_(surface, kScout) {}
 
   void trace(double length) {
     length_ = length;

@@ -6,6 +6,7 @@
 
 #include "march/march_over.hpp"
 #include "march/point_normals.hpp"
+#include "query/scout.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
 #include "taut/march/march.hpp"
@@ -16,8 +17,6 @@ namespace {
 
 /// Length of a step aside, in cells: half of it and twice of it lead to the same geodesics.
 constexpr double kAside = 1;
-constexpr double kRayTolerance = 1e-3;
-constexpr int kMostRaySteps = 30;
 
 /// The middles of the parts of a way with sharp bends, but for those at its ends.
 std::vector<Index> sharp_places(const std::vector<std::uint8_t>& sharp) {
@@ -55,7 +54,7 @@ std::vector<StartPath> side_steps(const Surface& surface, const Ground& ground, 
                                   const Context& context) {
   std::vector<StartPath> starts;
   const SurfaceCells& cells = *ground.cells;
-  ExponentialMap map(surface, {.tolerance = kRayTolerance, .max_steps = kMostRaySteps, .conjugate = false});
+  ExponentialMap map(surface, kScout);
   for (const Index at : sharp_places(ground.bends->at(way))) {
     std::vector<Vector> points;
     try {
