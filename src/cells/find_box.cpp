@@ -1,14 +1,17 @@
 #include "taut/cells/find_box.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
 
-#include "cells/crossed.hpp"
 #include "cells/crossing_pool.hpp"
+#include "cells/outermost.hpp"
 #include "cells/refine.hpp"
+#include "core/parallel.hpp"
 #include "surface/describe.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/cells/crossing.hpp"
@@ -18,57 +21,96 @@
 namespace taut {
 namespace {
 
-constexpr double kReach = 0x1p24;   // model units
-constexpr int kLevelsPerRound = 6;  // a round resolves a box to 1/64
-constexpr Index kMaxCellsPerRound = 4096;
-constexpr double kSampleMargin = 0.05;   // of the samples' diagonal
-constexpr double kDefaultHalfWidth = 5;  // model units: 1.6 periods of a sine
-constexpr double kTrialMargin = 0.1;     // of the diagonal
-constexpr Index kTrials = 192;           // starts a scale
+constexpr double kReach = 0x1p24;  // model units
+constexpr int kMostLevels = 29;    // cells have 31 bits
+// So many cells are all halved, of more only the outermost; above d = 3 these are nearly all.
+constexpr Index kFewCells = 512;
+constexpr Index kFewCellsAbove3 = 4096;
+constexpr std::int64_t kCellsAcross = 40;  // of the box found, aimed at
+constexpr double kTight = 24;              // and enough
+constexpr double kSampleMargin = 0.05;     // of the samples' diagonal
+constexpr double kDefaultHalfWidth = 5;    // model units: 1.6 periods of a sine
+constexpr double kTrialMargin = 0.1;       // of the diagonal
+constexpr Index kTrials = 192;             // starts a scale
 
 Box cube(const Vector& centre, double half_width) { return {centre.array() - half_width, centre.array() + half_width}; }
 
-/// The bounding box of the cells that the surface may cross inside `box`, looked for in one cube around it to 1/64 of
-/// its size or until there are too many; empty (d = 0) when there are none.
-Box shrink_once(const Surface& surface, const Box& box, const Context& context) {
+/// A box around the surface, and the size of the cells it is made of.
+struct Shrunk {
+  Box box;  // empty (d = 0): there is no surface
+  double resolution = 0;
+};
+
+/// How many cells (d x n coordinates) stand side by side, on the axis where most do.
+std::int32_t most_across(Index d, const std::vector<std::int32_t>& cells) {
+  const Eigen::Map<const Eigen::MatrixX<std::int32_t>> all(cells.data(), d, static_cast<Index>(cells.size()) / d);
+  return (all.rowwise().maxCoeff() - all.rowwise().minCoeff()).maxCoeff() + 1;
+}
+
+/// The bounding box of the cells that the surface may cross inside `box`, small against it or as many levels below.
+Shrunk shrink_once(const Surface& surface, const Box& box, const Context& context) {
   const Index d = surface.dim();
   // A cube off the box's middle, so that a tiny surface there does not sit in the corner of 2^d cells on every level.
   const double half_width = 0.55 * box.extent().maxCoeff() + std::numeric_limits<double>::min();
   Vector origin = 0.5 * (box.lower + box.upper);
   for (Index a = 0; a < d; ++a) origin(a) -= half_width * (1 + 0.08 * std::sin(static_cast<double>(a + 1)));
-  detail::CrossingPool pool(surface.with_box(box), origin, std::ldexp(2 * half_width, -kLevelsPerRound));
+  // Cells are to be told apart by rounding.
+  const double rounding = 0x1p8 * std::numeric_limits<double>::epsilon() * origin.lpNorm<Eigen::Infinity>();
+  int level = 0;
+  while (level < kMostLevels && std::ldexp(half_width, -level) > rounding) ++level;
+  const CellGrid grid(origin, std::ldexp(2 * half_width, -level));
+  detail::CrossingPool pool(surface.with_box(box), grid.origin(), grid.size());
   std::vector<std::int32_t> cells(static_cast<std::size_t>(d), 0);
-  int level = kLevelsPerRound;
-  std::vector<std::int32_t> tested = detail::crossed(pool, d, cells, level, context);
-  while (level > 0 && static_cast<Index>(tested.size()) / d <= kMaxCellsPerRound) {
+  std::vector<std::int32_t> untested = cells;
+  const Index few = d <= 3 ? kFewCells : kFewCellsAbove3;
+  for (;; --level) {
     cells.clear();
-    detail::append_halves(d, tested.data(), static_cast<Index>(tested.size()) / d, cells);
-    --level;
-    tested = detail::crossed(pool, d, cells, level, context);
+    detail::Refiner(*detail::CrossingPool::Loan(pool), d).refine(untested, level, level, cells);
+    if (cells.empty()) return {};
+    if (level == 0 || static_cast<Index>(cells.size()) > few * d) break;
+    untested.clear();
+    detail::append_halves(d, cells.data(), static_cast<Index>(cells.size()) / d, untested);
   }
-  if (tested.empty()) return {};
-  const CellGrid grid(origin, std::ldexp(2 * half_width, level - kLevelsPerRound));
-  Box found{box.upper, box.lower};
-  for (std::size_t c = 0; c < tested.size(); ++c) {
-    const Index a = static_cast<Index>(c) % d;
-    found.lower(a) = std::min(found.lower(a), std::max(box.lower(a), grid.face(a, tested[c])));
-    found.upper(a) = std::max(found.upper(a), std::min(box.upper(a), grid.face(a, tested[c] + 1)));
+  int last_level = level;
+  if (d <= 3) {
+    for (std::int64_t across = most_across(d, cells); last_level > 0 && across < kCellsAcross; across *= 2)
+      --last_level;
   }
-  return found;
+  Shrunk found{box, std::ldexp(grid.size(), last_level)};
+  std::atomic<bool> empty = false;
+  detail::parallel_for(context, 0, 2 * d, 1, [&](Index first, Index) {
+    const Index axis = first / 2;
+    const int side = first % 2 == 0 ? -1 : 1;
+    const detail::CrossingPool::Loan test(pool);
+    const auto outermost = detail::outermost_face(*test, d, cells, level, last_level, axis, side);
+    if (!outermost) {
+      empty = true;
+      return;
+    }
+    const double face = grid.face(axis, *outermost);
+    if (side < 0) found.box.lower(axis) = std::max(box.lower(axis), face);
+    if (side > 0) found.box.upper(axis) = std::min(box.upper(axis), face);
+  });
+  return empty ? Shrunk{} : found;
 }
 
 /// Shrinks `box` until it fits the surface; empty (d = 0) when there is none in it.
 Box shrink(const Surface& surface, Box box, const Context& context) {
   for (;;) {
-    const Box smaller = shrink_once(surface, box, context);
-    if (smaller.dim() == 0) return smaller;
-    const double rounding = 0x1p14 * std::numeric_limits<double>::epsilon() *
-                            std::max(smaller.lower.lpNorm<Eigen::Infinity>(), smaller.upper.lpNorm<Eigen::Infinity>());
+    context.check_cancelled();
+    const Shrunk smaller = shrink_once(surface, box, context);
+    if (smaller.box.dim() == 0) return smaller.box;
+    const double rounding =
+        0x1p14 * std::numeric_limits<double>::epsilon() *
+        std::max(smaller.box.lower.lpNorm<Eigen::Infinity>(), smaller.box.upper.lpNorm<Eigen::Infinity>());
     const double before = box.extent().maxCoeff();
-    const double after = smaller.extent().maxCoeff();
-    box = smaller;
-    // Once the whole cube is in use, another round brings nothing; a single point shrinks until rounding ends it.
-    if (after > 0.6 * before || after <= rounding || after <= std::numeric_limits<double>::min() * 0x1p60) return box;
+    const double after = smaller.box.extent().maxCoeff();
+    box = smaller.box;
+    // Once it is many cells wide, or does not shrink; a single point shrinks until rounding ends it.
+    if (after >= kTight * smaller.resolution || after > 0.6 * before || after <= rounding ||
+        after <= std::numeric_limits<double>::min() * 0x1p60) {
+      return box;
+    }
   }
 }
 

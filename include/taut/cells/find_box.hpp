@@ -10,9 +10,9 @@ namespace taut {
 /// Where to look for a surface: its own box where it has one; else, in this order,
 ///  - a surface with samples: their box and 5 % of its diagonal around it;
 ///  - F with interval bounds: a box that holds the whole surface, proved within +-2^24 (16.8 million model units, more
-///    where `near` asks for it), tight to about 1/32 of its size. A surface that goes on beyond (a plane, a gyroid) is
-///    boxed, on the axes where it does so, around `near` with a margin of the points' spread, at least half their
-///    largest coordinate; without points, +-5, doubled until there is a surface in it;
+///    where `near` asks for it), tight to about 1/24 of its size (1/8 above d = 3). A surface that goes on beyond (a
+///    plane, a gyroid) is boxed, on the axes where it does so, around `near` with a margin of the points' spread, at
+///    least half their largest coordinate; without points, +-5, doubled until there is a surface in it;
 ///  - else by trial: starts scattered over scales from 1e-3 to 1e6 around `near` (or 0) are projected; where three
 ///    scales in a row find the same extent the surface is taken as bounded by it (and 10 % more), else as going on
 ///    beyond, as above. Nothing is proved then: give a box if you know one.
