@@ -8,12 +8,14 @@
 #include <cstdio>
 #include <iostream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "checks.hpp"
 #include "commands.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
+#include "taut/core/threads.hpp"
 
 namespace taut::app {
 namespace {
@@ -146,4 +148,7 @@ void CommonArguments::add_to(CLI::App& command) {
 
 }  // namespace taut::app
 
-int main(int argc, char** argv) { return taut::app::run_program(argc, argv); }
+int main(int argc, char** argv) {
+  const std::jthread starting = taut::start_threads();
+  return taut::app::run_program(argc, argv);
+}

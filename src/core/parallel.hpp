@@ -15,4 +15,7 @@ namespace taut::detail {
 void parallel_for(const Context& context, Index begin, Index end, Index grain,
                   const std::function<void(Index first, Index last)>& body);
 
+/// How many threads a loop may have: at least 1.
+[[nodiscard]] Index num_threads(const Context& context);
+
 }  // namespace taut::detail
