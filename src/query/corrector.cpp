@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "curve/normal_frame.hpp"
 #include "curve/polyline.hpp"
 #include "query/candidates.hpp"
@@ -99,6 +100,33 @@ class Hope {
 Corrector::Corrector(const Surface& surface, const PathOptions& options, const Context& context)
     : surface_(surface), options_(options), context_(context) {}
 
+NewtonSolver& Corrector::rough(std::size_t worker) {
+  std::optional<NewtonSolver>& solver = rough_.at(worker);
+  if (!solver) solver.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
+  return *solver;
+}
+
+NewtonSolver& Corrector::newton(std::size_t worker) {
+  std::optional<NewtonSolver>& solver = newton_.at(worker);
+  if (!solver) solver.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
+  return *solver;
+}
+
+template <class Hopeful, class Work, class Take>
+void Corrector::in_waves(std::size_t n, const Hopeful& hopeful, const Work& work, const Take& take) const {
+  const auto at_a_time = std::min(kMostAtATime, static_cast<std::size_t>(num_threads(context_)));
+  for (std::size_t first = 0; first < n && hopeful(first);) {
+    std::size_t last = std::min(n, first + at_a_time);
+    while (!hopeful(last - 1)) --last;
+    parallel_for(context_, 0, static_cast<Index>(last - first), 1,
+                 [&](Index i, Index) { work(first + static_cast<std::size_t>(i), static_cast<std::size_t>(i)); });
+    for (; first < last; ++first) {
+      if (!hopeful(first)) return;
+      take(first);
+    }
+  }
+}
+
 /// Newton's method from the start once it has been brought to rest in small steps that keep to their sheet. None where
 /// that leads to no geodesic either.
 std::optional<NewtonResult> Corrector::correct_gently(const Points& start) {
@@ -114,7 +142,7 @@ std::optional<NewtonResult> Corrector::correct_gently(const Points& start) {
   Shortening shortening(*maker_, std::move(strand), gap);
   for (const double settled : {0.1, 1e-3}) {
     const Shortening::Outcome outcome = shortening.run(settled * gap, context_);
-    NewtonResult geodesic = newton_->solve(shortening.strand().polyline(), context_);
+    NewtonResult geodesic = newton(0).solve(shortening.strand().polyline(), context_);
     if (is_geodesic(geodesic)) return geodesic;
     if (outcome == Shortening::Outcome::stuck) break;
   }
@@ -130,16 +158,15 @@ void Corrector::explain(Corrected& corrected) const {
   }
 }
 
-Corrector::Corrected Corrector::shorten(const Choice& choice, double cell) {
+Corrector::Corrected Corrector::shorten(const Choice& choice, double cell, std::size_t worker) {
   const Points& start = choice.start;
   Corrected corrected{{}, {}, start};
   Geodesic& geodesic = corrected.geodesic;
   const double start_length = polyline_length(start);
   switch (options_.method) {
     case CorrectionMethod::newton:
-      if (!newton_) newton_.emplace(surface_, NewtonOptions{.tolerance = options_.tolerance});
-      if (choice.rough) geodesic = newton_->refine(*choice.rough, context_);
-      if (!choice.rough || !is_geodesic(geodesic)) geodesic = newton_->solve(start, context_);
+      if (choice.rough) geodesic = newton(worker).refine(*choice.rough, context_);
+      if (!choice.rough || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
       break;
     case CorrectionMethod::flow:
       geodesic =
@@ -164,37 +191,44 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, double cell) {
 /// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once, and those that do not
 /// converge as they are; least first.
 std::vector<Corrector::Choice> Corrector::choose(const std::vector<StartPath>& starts) {
-  if (!rough_) rough_.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
   std::vector<Contender> contenders;
   std::vector<Choice> choices;
   Hope hope(kMarchError);
-  // What a curve that did not become a geodesic may yet come to, at least, if it came to rest.
-  const auto correct_roughly = [&](const StartPath& start) -> std::optional<double> {
-    NewtonResult geodesic = rough_->solve(start.points, context_);
-    if (!is_geodesic(geodesic)) {
-      const bool at_rest = std::isfinite(geodesic.length_error);
-      return at_rest ? geodesic.length - geodesic.length_error : std::numeric_limits<double>::infinity();
-    }
+  std::vector<NewtonResult> geodesics(starts.size());
+  const auto correct_roughly = [&](const std::vector<StartPath>& from) {
+    return [&](std::size_t j, std::size_t worker) { geodesics[j] = rough(worker).solve(from[j].points, context_); };
+  };
+  // False: no geodesic.
+  const auto take = [&](const StartPath& start, NewtonResult& geodesic) {
+    if (!is_geodesic(geodesic)) return false;
     hope.found(geodesic.length);
     hope.doubt(start.length, geodesic.length);
     add_contender(contenders, contender(start.points, std::move(geodesic)));
-    return std::nullopt;
+    return true;
   };
-  for (const StartPath& start : starts) {
-    if (hope.is_lost(start.length)) break;
-    const std::optional<double> at_least = correct_roughly(start);
-    if (at_least)
-      choices.push_back({std::min(*at_least, start.length / (1 + kMarchError)), start.points, std::nullopt});
-  }
-  std::vector<PathCandidate> geodesics;
+  in_waves(
+      starts.size(), [&](std::size_t j) { return !hope.is_lost(starts[j].length); }, correct_roughly(starts),
+      [&](std::size_t j) {
+        const StartPath& start = starts[j];
+        if (take(start, geodesics[j])) return;
+        // What the curve may yet come to, at least, if it came to rest.
+        const bool at_rest = std::isfinite(geodesics[j].length_error);
+        const double at_least = at_rest ? geodesics[j].length - geodesics[j].length_error : start.length;
+        choices.push_back({std::min(at_least, start.length / (1 + kMarchError)), start.points, std::nullopt});
+      });
+  std::vector<PathCandidate> known;
   double shortest = std::numeric_limits<double>::infinity();
-  for (const Contender& known : contenders) {
-    geodesics.push_back(known.geodesic);
-    shortest = std::min(shortest, known.at_most());
+  for (const Contender& contender : contenders) {
+    known.push_back(contender.geodesic);
+    shortest = std::min(shortest, contender.at_most());
   }
-  for (const StartPath& start : splices(surface_, geodesics, (1 + kSpliced) * shortest)) (void)correct_roughly(start);
-  for (Contender& known : contenders) {
-    choices.push_back({known.at_least(), std::move(known.start), std::move(known.curve)});
+  const std::vector<StartPath> spliced = splices(surface_, known, (1 + kSpliced) * shortest);
+  geodesics.resize(std::max(geodesics.size(), spliced.size()));
+  in_waves(
+      spliced.size(), [](std::size_t) { return true; }, correct_roughly(spliced),
+      [&](std::size_t j) { (void)take(spliced[j], geodesics[j]); });
+  for (Contender& contender : contenders) {
+    choices.push_back({contender.at_least(), std::move(contender.start), std::move(contender.curve)});
   }
   std::ranges::stable_sort(choices, {}, &Choice::length);
   return choices;
@@ -214,20 +248,22 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   std::vector<const Choice*> failed;
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
   Hope hope(selects ? 0 : kMarchError);
-  for (const Choice& choice : choices) {
-    if (!options_.all && hope.is_lost(choice.length)) break;
-    Corrected corrected = shorten(choice, starts.cell);
-    const Geodesic& geodesic = corrected.geodesic;
-    if (is_geodesic(geodesic)) {
-      hope.found(geodesic.length + geodesic.length_error);
-      if (!selects) hope.doubt(choice.length, geodesic.length);
-    } else {
-      failed.push_back(&choice);
-      promised = std::min(promised, geodesic.length + geodesic.length_error);
-    }
-    if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
-    if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected);
-  }
+  std::vector<Corrected> corrected(choices.size());
+  in_waves(
+      choices.size(), [&](std::size_t j) { return options_.all || !hope.is_lost(choices[j].length); },
+      [&](std::size_t j, std::size_t worker) { corrected[j] = shorten(choices[j], starts.cell, worker); },
+      [&](std::size_t j) {
+        const Geodesic& geodesic = corrected[j].geodesic;
+        if (is_geodesic(geodesic)) {
+          hope.found(geodesic.length + geodesic.length_error);
+          if (!selects) hope.doubt(choices[j].length, geodesic.length);
+        } else {
+          failed.push_back(&choices[j]);
+          promised = std::min(promised, geodesic.length + geodesic.length_error);
+        }
+        if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
+        if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected[j]);
+      });
   // A start from which nothing came, though it is as short as what was found, may lead to the shortest path. Where
   // nothing was found, finer cells are the better help.
   if (options_.method != CorrectionMethod::newton) failed.clear();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +17,7 @@ namespace taut::detail {
 /// Shortens starts to geodesics by the method asked for, and tells which is the shortest. One thread's.
 class Corrector {
  public:
+  /// On the threads of `context`: several starts are corrected side by side.
   Corrector(const Surface& surface, const PathOptions& options, const Context& context);
 
   /// Corrects every start that may lead to the shortest path. The best one becomes the Geodesic part of `result`, the
@@ -39,14 +42,27 @@ class Corrector {
     std::optional<SpectralCurve> rough;  // the geodesic, to a few digits
   };
 
-  [[nodiscard]] Corrected shorten(const Choice& choice, double cell);
+  /// Calls work(j, worker) for j = 0 .. n - 1, several at a time, each with its worker, and take(j) for one after the
+  /// other, as long as hopeful(j), which may depend on what was taken. How many at a time only changes how much is done
+  /// in vain.
+  template <class Hopeful, class Work, class Take>
+  void in_waves(std::size_t n, const Hopeful& hopeful, const Work& work, const Take& take) const;
+  [[nodiscard]] Corrected shorten(const Choice& choice, double cell, std::size_t worker);
   [[nodiscard]] std::vector<Choice> choose(const std::vector<StartPath>& starts);
+
+  /// The solvers of a worker, made when they are first needed.
+  [[nodiscard]] NewtonSolver& rough(std::size_t worker);
+  [[nodiscard]] NewtonSolver& newton(std::size_t worker);
+
+  /// Of more at a time, most would be corrected in vain.
+  static constexpr std::size_t kMostAtATime = 4;
+  using Solvers = std::array<std::optional<NewtonSolver>, kMostAtATime>;
 
   const Surface& surface_;
   const PathOptions& options_;
   const Context& context_;
-  std::optional<NewtonSolver> rough_;
-  std::optional<NewtonSolver> newton_;
+  Solvers rough_;
+  Solvers newton_;
   std::optional<StrandMaker> maker_;
 };
 

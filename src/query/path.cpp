@@ -288,11 +288,13 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
   std::vector<PathResult> results(static_cast<std::size_t>(n));
   Context threads = user;
   if (!parallel) threads.threads = 1;
+  Context serial = context;  // of a single pair among many
+  serial.threads = 1;
   std::atomic<Index> done = 0;
   *batch = true;
   try {
     detail::parallel_for(threads, 0, n, kBlock, [&](Index first, Index last) {
-      Corrector corrector(surface, options, context);
+      Corrector corrector(surface, options, serial);
       for (Index j = first; j < last; ++j) {
         PathResult& result = results[static_cast<std::size_t>(j)];
         try {
