@@ -18,7 +18,7 @@
 namespace taut {
 namespace {
 
-constexpr Index kGrain = 1024;
+constexpr Index kGrain = 256;
 // A projected centre stands for its cell while it stays in the 3^d block around it...
 constexpr double kReach = 1.5;
 // ... and, for one equation, while it is no farther away, on any axis, than that of a cell that a plane crosses: at

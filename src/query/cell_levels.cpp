@@ -90,9 +90,9 @@ std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
 void CellLevels::refine_to_curvature() {
   std::shared_ptr<SurfaceCells>& coarsest = complete_.front().cells;
   for (int i = 0; i < kMostRefinements; ++i) {
-    NormalTurns turns(*coarsest, context_);
-    resolved_ = turns.make_a_sheet() && turns.quantile(kTypically) <= kMostTurn;
-    const bool enough = resolved_ && (i >= kRefinementsForRims || turns.quantile(kNearlyEverywhere) <= kMostTurn);
+    const NormalTurns turns(*coarsest, context_);
+    resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, kTypically);
+    const bool enough = resolved_ && (i >= kRefinementsForRims || turns.mostly_within(kMostTurn, kNearlyEverywhere));
     if (enough || surface_.dim() != 3 || 4 * coarsest->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest = subdivided(size_);

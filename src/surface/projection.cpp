@@ -49,7 +49,7 @@ constexpr double kSurelyRounding = 1e-9;
 constexpr double kNeverRounding = 1e-4;
 
 /// Projects points in blocks. The state of a point stands in slot arrays, so that every visit is one dense batch.
-template <int D>
+template <int D, int K>
 class Projector {
  public:
   Projector(Evaluator& evaluator, Index dim, Index codim, const ProjectionOptions& options)
@@ -76,35 +76,36 @@ class Projector {
   static constexpr Index kBlock = 256;
   static std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
   [[nodiscard]] Index dim() const { return D > 0 ? D : d_; }
+  [[nodiscard]] Index codim() const { return K > 0 ? K : k_; }
 
   void resize(Index n) {
-    const std::size_t dk = idx(d_ * k_);
+    const std::size_t dk = idx(dim() * codim());
     const std::size_t count = idx(n);
-    for (auto* a : {&start_, &step_, &trial_x_}) a->resize(count * idx(d_));
-    for (auto* a : {&value_, &trial_value_}) a->resize(count * idx(k_));
+    for (auto* a : {&start_, &step_, &trial_x_}) a->resize(count * idx(dim()));
+    for (auto* a : {&value_, &trial_value_}) a->resize(count * idx(codim()));
     for (auto* a : {&jacobian_, &q_, &trial_jacobian_}) a->resize(count * dk);
-    r_factor_.resize(count * idx(k_ * k_));
+    r_factor_.resize(count * idx(codim() * codim()));
     for (auto* a : {&r_, &t_, &turn_}) a->resize(count);
     steps_.assign(count, 0);
     active_.clear();
-    y_.resize(idx(k_));
-    bend_.resize(idx(k_));
+    y_.resize(idx(codim()));
+    bend_.resize(idx(codim()));
   }
 
   void run_block(Index n, double* points, Outcome* outcome) {
     resize(n);
-    std::copy(points, points + n * d_, start_.begin());
+    std::copy(points, points + n * dim(), start_.begin());
     evaluator_.evaluate({.n = n, .x = points, .value = value_.data(), .jacobian = jacobian_.data()});
     for (Index j = 0; j < n; ++j) {
       turn_[idx(j)] = 0;
       t_[idx(j)] = 1;
       r_[idx(j)] = std::numeric_limits<double>::quiet_NaN();
-      outcome[j] = start(j, points + j * d_);
+      outcome[j] = start(j, points + j * dim());
       if (outcome[j] == Outcome::moving) active_.push_back(j);
     }
     for (int step = 0; step < options_.max_steps && !active_.empty(); ++step) visit(points, outcome);
     for (const Index j : active_) {
-      const double* x = points + j * d_;
+      const double* x = points + j * dim();
       const bool at_root = runs_into_root(j, x) && r_[idx(j)] <= 1e-4 * kShrunk * distance_gone(j, x);
       outcome[j] = at_root ? Outcome::singular : Outcome::out_of_steps;
     }
@@ -114,24 +115,25 @@ class Projector {
     for (Index c = 0; c < dim(); ++c) {
       if (!std::isfinite(x[c])) return Outcome::non_finite;
     }
-    for (Index i = 0; i < k_; ++i) {
-      if (!std::isfinite(value_[idx(j * k_ + i)])) return Outcome::non_finite;
+    for (Index i = 0; i < codim(); ++i) {
+      if (!std::isfinite(value_[idx(j * codim() + i)])) return Outcome::non_finite;
     }
     return linearise(j);
   }
 
   /// Factors J at x and finds the Newton step.
   Outcome linearise(Index j) {
-    double* q = &q_[idx(j * d_ * k_)];
-    double* r = &r_factor_[idx(j * k_ * k_)];
-    if (NormalSpace<D>::factor(dim(), k_, &jacobian_[idx(j * d_ * k_)], q, r) < k_) return Outcome::singular;
-    NormalSpace<D>::solve(k_, r, &value_[idx(j * k_)], y_.data());
-    double* s = &step_[idx(j * d_)];
+    double* q = &q_[idx(j * dim() * codim())];
+    double* r = &r_factor_[idx(j * codim() * codim())];
+    if (NormalSpace<D>::factor(dim(), codim(), &jacobian_[idx(j * dim() * codim())], q, r) < codim())
+      return Outcome::singular;
+    NormalSpace<D>::solve(codim(), r, &value_[idx(j * codim())], y_.data());
+    double* s = &step_[idx(j * dim())];
     std::fill(s, s + dim(), 0.0);
-    for (Index i = 0; i < k_; ++i) {
+    for (Index i = 0; i < codim(); ++i) {
       for (Index c = 0; c < dim(); ++c) s[c] -= y_[idx(i)] * q[i * dim() + c];
     }
-    r_[idx(j)] = NormalSpace<Eigen::Dynamic>::norm(k_, y_.data());
+    r_[idx(j)] = NormalSpace<K>::norm(codim(), y_.data());
     if (!std::isfinite(r_[idx(j)])) return Outcome::singular;
     return r_[idx(j)] <= options_.tolerance ? Outcome::converged : Outcome::moving;
   }
@@ -142,7 +144,7 @@ class Projector {
     for (Index a = 0; a < n; ++a) {
       const Index j = active_[idx(a)];
       for (Index c = 0; c < dim(); ++c) {
-        trial_x_[idx(a * d_ + c)] = points[j * d_ + c] + t_[idx(j)] * step_[idx(j * d_ + c)];
+        trial_x_[idx(a * dim() + c)] = points[j * dim() + c] + t_[idx(j)] * step_[idx(j * dim() + c)];
       }
     }
     evaluator_.evaluate(
@@ -151,7 +153,7 @@ class Projector {
     for (Index a = 0; a < n; ++a) {
       const Index j = active_[idx(a)];
       ++steps_[idx(j)];
-      outcome[j] = judge(j, a, points + j * d_);
+      outcome[j] = judge(j, a, points + j * dim());
       if (outcome[j] == Outcome::moving) active_[idx(kept++)] = j;
     }
     active_.resize(idx(kept));
@@ -161,29 +163,29 @@ class Projector {
   Outcome judge(Index j, Index a, double* x) {
     const double t = t_[idx(j)];
     const double r = r_[idx(j)];
-    const double* factor = &r_factor_[idx(j * k_ * k_)];
-    const double* jacobian = &jacobian_[idx(j * d_ * k_)];
-    const double* trial_jacobian = &trial_jacobian_[idx(a * d_ * k_)];
-    NormalSpace<D>::solve(k_, factor, &trial_value_[idx(a * k_)], y_.data());
-    const double r_t = NormalSpace<Eigen::Dynamic>::norm(k_, y_.data());
+    const double* factor = &r_factor_[idx(j * codim() * codim())];
+    const double* jacobian = &jacobian_[idx(j * dim() * codim())];
+    const double* trial_jacobian = &trial_jacobian_[idx(a * dim() * codim())];
+    NormalSpace<D>::solve(codim(), factor, &trial_value_[idx(a * codim())], y_.data());
+    const double r_t = NormalSpace<K>::norm(codim(), y_.data());
     double change = 0;
     double before_size = 0;
     double after_size = 0;
-    for (Index i = 0; i < k_; ++i) {
+    for (Index i = 0; i < codim(); ++i) {
       double along = 0;
       for (Index c = 0; c < dim(); ++c) {
         const double before = jacobian[i * dim() + c];
         const double after = trial_jacobian[i * dim() + c];
         const double difference = after - before;
-        along += difference * step_[idx(j * d_ + c)];
+        along += difference * step_[idx(j * dim() + c)];
         change += difference * difference;
         before_size += before * before;
         after_size += after * after;
       }
       bend_[idx(i)] = t * along;
     }
-    NormalSpace<D>::solve(k_, factor, bend_.data(), bend_.data());
-    const double bend = NormalSpace<Eigen::Dynamic>::norm(k_, bend_.data());
+    NormalSpace<D>::solve(codim(), factor, bend_.data(), bend_.data());
+    const double bend = NormalSpace<K>::norm(codim(), bend_.data());
     const bool linear = bend <= kLinear * t * r;
 
     if (!(r_t <= (1 - kSufficient * t) * r)) {
@@ -193,9 +195,9 @@ class Projector {
       return std::isfinite(change) ? Outcome::stuck : Outcome::singular;
     }
 
-    std::copy_n(&trial_x_[idx(a * d_)], d_, x);
-    std::copy_n(&trial_value_[idx(a * k_)], k_, &value_[idx(j * k_)]);
-    std::copy_n(trial_jacobian, d_ * k_, &jacobian_[idx(j * d_ * k_)]);
+    std::copy_n(&trial_x_[idx(a * dim())], dim(), x);
+    std::copy_n(&trial_value_[idx(a * codim())], codim(), &value_[idx(j * codim())]);
+    std::copy_n(trial_jacobian, dim() * codim(), &jacobian_[idx(j * dim() * codim())]);
     turn_[idx(j)] = std::max(std::sqrt(change / std::max(before_size, after_size)), 0.25 * turn_[idx(j)]);
     t_[idx(j)] = std::min(1.0, 2 * t);
     Outcome outcome = linearise(j);
@@ -222,18 +224,18 @@ class Projector {
     if (r_[idx(j)] > kNeverRounding * scale) return false;  // a pole was jumped
     constexpr double kReach = 1024;
     std::vector<double> far(x, x + dim());
-    for (Index c = 0; c < dim(); ++c) far[idx(c)] -= kReach * step_[idx(j * d_ + c)];
-    std::vector<double> value(idx(k_));
+    for (Index c = 0; c < dim(); ++c) far[idx(c)] -= kReach * step_[idx(j * dim() + c)];
+    std::vector<double> value(idx(codim()));
     evaluator_.evaluate({.n = 1, .x = far.data(), .value = value.data()});
-    for (Index i = 0; i < k_; ++i) value[idx(i)] -= (1 + kReach) * value_[idx(j * k_ + i)];
-    NormalSpace<D>::solve(k_, &r_factor_[idx(j * k_ * k_)], value.data(), value.data());
-    return NormalSpace<Eigen::Dynamic>::norm(k_, value.data()) <= 0.25 * kReach * r_[idx(j)];
+    for (Index i = 0; i < codim(); ++i) value[idx(i)] -= (1 + kReach) * value_[idx(j * codim() + i)];
+    NormalSpace<D>::solve(codim(), &r_factor_[idx(j * codim() * codim())], value.data(), value.data());
+    return NormalSpace<K>::norm(codim(), value.data()) <= 0.25 * kReach * r_[idx(j)];
   }
 
   [[nodiscard]] double distance_gone(Index j, const double* x) const {
     double sum = 0;
     for (Index c = 0; c < dim(); ++c) {
-      const double way = x[c] - start_[idx(j * d_ + c)];
+      const double way = x[c] - start_[idx(j * dim() + c)];
       sum += way * way;
     }
     return std::sqrt(sum);
@@ -263,7 +265,9 @@ class Projector {
 void project(Evaluator& evaluator, Index dim, Index codim, const ProjectionOptions& options, Index n, double* points,
              Outcome* outcome, double* residual, int* steps, double* normals) {
   const auto run = [&]<int D>() {
-    Projector<D>(evaluator, dim, codim, options).run(n, points, outcome, residual, steps, normals);
+    if (codim == 1)
+      return Projector<D, 1>(evaluator, dim, codim, options).run(n, points, outcome, residual, steps, normals);
+    Projector<D, Eigen::Dynamic>(evaluator, dim, codim, options).run(n, points, outcome, residual, steps, normals);
   };
   switch (dim) {
     case 2: return run.template operator()<2>();
