@@ -24,10 +24,9 @@ namespace {
 
 /// A corrected path is never much longer than its start; one that is has jumped somewhere.
 constexpr double kMostGrowth = 1.1;
-/// Starts are corrected as long as they may turn out the shortest, the marched distances being this wrong, or this many
-/// times as wrong as those of the ways corrected before.
-constexpr double kMarchError = 0.1;
-constexpr double kMarchErrorFactor = 3;
+/// Starts are corrected as long as they may turn out the shortest, their lengths being as wrong as is to be expected,
+/// or this many times as wrong as those of the ways corrected before.
+constexpr double kErrorFactor = 3;
 /// Several starts are first corrected to this tolerance, to see which may be the shortest.
 constexpr double kRoughTolerance = 1e-3;
 /// Splices of those are tried that seem longer than the shortest by no more than this part.
@@ -88,7 +87,7 @@ class Hope {
   [[nodiscard]] bool is_lost(double length) const { return length > shortest_ * (1 + error_); }
   void found(double length) { shortest_ = std::min(shortest_, length); }
   /// A start that promised one length has led to another.
-  void doubt(double promised, double length) { error_ = std::max(error_, kMarchErrorFactor * (promised / length - 1)); }
+  void doubt(double promised, double length) { error_ = std::max(error_, kErrorFactor * (promised / length - 1)); }
 
  private:
   double shortest_ = std::numeric_limits<double>::infinity();
@@ -190,10 +189,11 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, double cell, std::
 
 /// The starts that may lead to the shortest path, corrected to a few digits, each geodesic once, and those that do not
 /// converge as they are; least first.
-std::vector<Corrector::Choice> Corrector::choose(const std::vector<StartPath>& starts) {
+std::vector<Corrector::Choice> Corrector::choose(const Starts& given) {
+  const std::vector<StartPath>& starts = given.paths;
   std::vector<Contender> contenders;
   std::vector<Choice> choices;
-  Hope hope(kMarchError);
+  Hope hope(given.error);
   std::vector<NewtonResult> geodesics(starts.size());
   const auto correct_roughly = [&](const std::vector<StartPath>& from) {
     return [&](std::size_t j, std::size_t worker) { geodesics[j] = rough(worker).solve(from[j].points, context_); };
@@ -214,7 +214,7 @@ std::vector<Corrector::Choice> Corrector::choose(const std::vector<StartPath>& s
         // What the curve may yet come to, at least, if it came to rest.
         const bool at_rest = std::isfinite(geodesics[j].length_error);
         const double at_least = at_rest ? geodesics[j].length - geodesics[j].length_error : start.length;
-        choices.push_back({std::min(at_least, start.length / (1 + kMarchError)), start.points, std::nullopt});
+        choices.push_back({std::min(at_least, start.length / (1 + given.error)), start.points, std::nullopt});
       });
   std::vector<PathCandidate> known;
   double shortest = std::numeric_limits<double>::infinity();
@@ -239,7 +239,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   const bool selects = options_.method == CorrectionMethod::newton && !options_.all && starts.paths.size() > 1;
   std::vector<Choice> choices;
   if (selects) {
-    choices = choose(starts.paths);
+    choices = choose(starts);
   } else {
     for (const StartPath& start : starts.paths) choices.push_back({start.length, start.points, std::nullopt});
   }
@@ -247,7 +247,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   std::vector<PathCandidate> candidates;
   std::vector<const Choice*> failed;
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
-  Hope hope(selects ? 0 : kMarchError);
+  Hope hope(selects ? 0 : starts.error);
   std::vector<Corrected> corrected(choices.size());
   in_waves(
       choices.size(), [&](std::size_t j) { return options_.all || !hope.is_lost(choices[j].length); },

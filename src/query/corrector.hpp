@@ -48,7 +48,7 @@ class Corrector {
   template <class Hopeful, class Work, class Take>
   void in_waves(std::size_t n, const Hopeful& hopeful, const Work& work, const Take& take) const;
   [[nodiscard]] Corrected shorten(const Choice& choice, double cell, std::size_t worker);
-  [[nodiscard]] std::vector<Choice> choose(const std::vector<StartPath>& starts);
+  [[nodiscard]] std::vector<Choice> choose(const Starts& given);
 
   /// The solvers of a worker, made when they are first needed.
   [[nodiscard]] NewtonSolver& rough(std::size_t worker);

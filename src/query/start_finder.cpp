@@ -158,6 +158,7 @@ Starts StartFinder::walk(const Vector& p, const Vector& q) const {
   Starts starts;
   Ways ways = find_ways(surface_, p, q, options_.all, context_);
   starts.rivals_sought = ways.rivals_sought;
+  starts.error = kInfinity;  // how long a walk is says little
   for (Points& way : ways.paths) {
     const double length = polyline_length(way);
     starts.paths.push_back({length, std::move(way)});

@@ -21,9 +21,10 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
-  double doubt = 0.03;                  ///< a path this much longer than the marched way has missed it, relative
-  bool rivals_sought = true;            ///< were there to be several ways, `paths` would hold them
-  std::optional<Barrier> barrier;       ///< where the march stopped short of the end, if it did
+  double error = 0.1;              ///< of the starts' lengths against those of the geodesics they lead to, relative
+  double doubt = 0.03;             ///< a path this much longer than the marched way has missed it, relative
+  bool rivals_sought = true;       ///< were there to be several ways, `paths` would hold them
+  std::optional<Barrier> barrier;  ///< where the march stopped short of the end, if it did
   PathSeconds seconds;
 };
 

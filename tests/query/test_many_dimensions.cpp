@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -60,6 +62,42 @@ TEST(ManyDimensions, RotationsUpToTheCutLocusHaveTheBiInvariantDistance) {
     EXPECT_NEAR(path.length, std::sqrt(2.0) * angle, 1e-9) << angle;
     EXPECT_EQ(path.points.col(0), path.from);
     EXPECT_EQ(path.points.rightCols<1>(), path.to);
+  }
+}
+
+// The walks that start such pairs differ in length by more than the two ways round do.
+TEST(ManyDimensions, TheShorterWayRoundIsFoundBesideTheCutLocus) {
+  using Matrix4 = Eigen::Matrix<double, 4, 4, Eigen::RowMajor>;
+  std::string equations;  // M^T M = I, row-major
+  for (int i = 1; i <= 4; ++i) {
+    for (int j = i; j <= 4; ++j) {
+      for (int row = 0; row < 16; row += 4)
+        equations += "+x" + std::to_string(row + i) + "*x" + std::to_string(row + j);
+      equations += i == j ? "=1;" : "=0;";
+    }
+  }
+  PathSolver solver(parse_surface(equations));
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  const auto random_rotation = [&]() -> Matrix4 {
+    const Matrix4 numbers = Matrix4::NullaryExpr([&] { return normal(random); });
+    Matrix4 m = Eigen::HouseholderQR<Matrix4>(numbers).householderQ();
+    if (m.determinant() < 0) m.row(0) *= -1;
+    return m;
+  };
+  for (int k = 0; k < 12; ++k) {
+    const double short_of_pi = std::pow(10.0, -1 - 4 * std::generate_canonical<double, 53>(random));
+    const double angles[2] = {pi - short_of_pi, pi * std::generate_canonical<double, 53>(random)};
+    Matrix4 turn = Matrix4::Zero();
+    for (int plane = 0; plane < 2; ++plane) {
+      turn.block<2, 2>(2 * plane, 2 * plane) = Eigen::Rotation2Dd(angles[plane]).toRotationMatrix();
+    }
+    const Matrix4 from = random_rotation();
+    const Matrix4 axes = random_rotation();
+    const Matrix4 to = from * axes * turn * axes.transpose();
+    const PathResult path = solver.solve(from.reshaped<Eigen::RowMajor>(), to.reshaped<Eigen::RowMajor>());
+    ASSERT_EQ(path.status, Status::ok) << path.message;
+    EXPECT_NEAR(path.length, std::sqrt(2.0) * std::hypot(angles[0], angles[1]), 1e-9) << k;
   }
 }
 
