@@ -141,7 +141,7 @@ std::shared_ptr<const std::vector<std::int32_t>> CellLevels::known_components(in
 }
 
 std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
-  if (surface_.dim() != 3 || surface_.codim() != 1 || lazy() || fitted() || cell_ > 0) return nullptr;
+  if (surface_.dim() != 3 || surface_.codim() != 1 || lazy() || fitted()) return nullptr;
   const std::shared_ptr<const CellMap> known = map(level);
   const std::lock_guard lock(mutex_);
   Complete& slot = complete_.at(static_cast<std::size_t>(level));

@@ -47,7 +47,7 @@ class CellLevels {
   /// The same, null where nobody has asked yet.
   [[nodiscard]] std::shared_ptr<const std::vector<std::int32_t>> known_components(int level);
   /// Where the surface bends within the complete cells of a level, made when first asked for; null where that is not
-  /// looked at: lazy cells, cells of a given size or for samples, and other than surfaces in R^3.
+  /// looked at: lazy cells, cells for samples, and other than surfaces in R^3.
   [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);
   /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
   [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;

@@ -77,6 +77,7 @@ std::shared_ptr<SurfaceCells> StartFinder::cells(int level, const PointsIn& seed
 }
 
 bool StartFinder::bends_sharply(int level, const Points& curve) const {
+  if (options_.cell > 0) return false;
   const std::shared_ptr<const SharpBends> bends = levels_.sharp_bends(level);
   return bends && bends->along(curve);
 }

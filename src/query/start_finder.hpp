@@ -60,7 +60,7 @@ class StartFinder {
                                    const Vector& q) const {
     return continue_to({std::move(cells), levels_.map(0), levels_.sharp_bends(0)}, from_p, q, std::nullopt);
   }
-  /// Does the surface bend within the cells of a level along a curve (d x m), where those were chosen without looking.
+  /// Does the surface bend within the cells of a level along a curve (d x m). False for cells of a given size.
   [[nodiscard]] bool bends_sharply(int level, const Points& curve) const;
   /// The cells of a level, shared unless they are lazy.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;

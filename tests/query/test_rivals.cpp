@@ -390,7 +390,8 @@ TEST_P(NearTheApex, OfAConeWaysAreTheShorterOnes) {
     p.col(static_cast<Index>(j)) = from[j];
     q.col(static_cast<Index>(j)) = to[j];
   }
-  PathSolver solver(parse_surface("x^2 + y^2 = " + std::to_string(opening * opening) + "*z^2"));
+  const Surface cone = parse_surface("x^2 + y^2 = " + std::to_string(opening * opening) + "*z^2");
+  PathSolver solver(cone);
   const std::vector<PathResult> paths = solver.solve_pairs(p, q);
   for (std::size_t j = 0; j < from.size(); ++j) {
     ASSERT_EQ(paths[j].status, Status::ok) << paths[j].message << " from " << from[j].transpose();
@@ -398,6 +399,10 @@ TEST_P(NearTheApex, OfAConeWaysAreTheShorterOnes) {
   }
   for (const std::size_t j : {0U, 13U, 26U, 39U, 51U}) {
     EXPECT_NEAR(solver.solve(from[j], to[j]).length, truth[j], 2e-9) << "alone, from " << from[j].transpose();
+  }
+  PathSolver on_given_cells(cone, {.cell = 0.1});
+  for (std::size_t j = 0; j < from.size(); j += 3) {
+    EXPECT_NEAR(on_given_cells.solve(from[j], to[j]).length, truth[j], 2e-9) << "from " << from[j].transpose();
   }
 }
 
