@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cells/crossed.hpp"
 #include "cells/crossing_pool.hpp"
 #include "cells/outermost.hpp"
 #include "cells/refine.hpp"
@@ -22,9 +23,12 @@ namespace taut {
 namespace {
 
 constexpr double kReach = 0x1p24;  // model units
-constexpr int kMostLevels = 29;    // cells have 31 bits
-// So many cells are all halved, of more only the outermost; above d = 3 these are nearly all.
+// A cube is halved so often, as long as there are few cells; of more, only the outermost are halved. (Cells have 31
+// bits.)
+constexpr int kMostLevels = 29;
 constexpr Index kFewCells = 512;
+// Above d = 3 the outermost cells are nearly all, so the cube is rather made smaller and halved again.
+constexpr int kMostLevelsAbove3 = 6;
 constexpr Index kFewCellsAbove3 = 4096;
 constexpr std::int64_t kCellsAcross = 40;  // of the box found, aimed at
 constexpr double kTight = 24;              // and enough
@@ -50,6 +54,8 @@ std::int32_t most_across(Index d, const std::vector<std::int32_t>& cells) {
 /// The bounding box of the cells that the surface may cross inside `box`, small against it or as many levels below.
 Shrunk shrink_once(const Surface& surface, const Box& box, const Context& context) {
   const Index d = surface.dim();
+  const int most_levels = d <= 3 ? kMostLevels : kMostLevelsAbove3;
+  const Index few_cells = d <= 3 ? kFewCells : kFewCellsAbove3;
   // A cube off the box's middle, so that a tiny surface there does not sit in the corner of 2^d cells on every level.
   const double half_width = 0.55 * box.extent().maxCoeff() + std::numeric_limits<double>::min();
   Vector origin = 0.5 * (box.lower + box.upper);
@@ -57,17 +63,15 @@ Shrunk shrink_once(const Surface& surface, const Box& box, const Context& contex
   // Cells are to be told apart by rounding.
   const double rounding = 0x1p8 * std::numeric_limits<double>::epsilon() * origin.lpNorm<Eigen::Infinity>();
   int level = 0;
-  while (level < kMostLevels && std::ldexp(half_width, -level) > rounding) ++level;
+  while (level < most_levels && std::ldexp(half_width, -level) > rounding) ++level;
   const CellGrid grid(origin, std::ldexp(2 * half_width, -level));
   detail::CrossingPool pool(surface.with_box(box), grid.origin(), grid.size());
-  std::vector<std::int32_t> cells(static_cast<std::size_t>(d), 0);
-  std::vector<std::int32_t> untested = cells;
-  const Index few = d <= 3 ? kFewCells : kFewCellsAbove3;
+  std::vector<std::int32_t> untested(static_cast<std::size_t>(d), 0);
+  std::vector<std::int32_t> cells;
   for (;; --level) {
-    cells.clear();
-    detail::Refiner(*detail::CrossingPool::Loan(pool), d).refine(untested, level, level, cells);
+    cells = detail::crossed(pool, d, untested, level, context);
     if (cells.empty()) return {};
-    if (level == 0 || static_cast<Index>(cells.size()) > few * d) break;
+    if (level == 0 || static_cast<Index>(cells.size()) > few_cells * d) break;
     untested.clear();
     detail::append_halves(d, cells.data(), static_cast<Index>(cells.size()) / d, untested);
   }

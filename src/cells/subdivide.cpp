@@ -102,7 +102,6 @@ CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, cons
   context.report("cells", 0);
 
   // The first levels one after the other, until there is enough to share.
-  // The first levels one after the other, until there is enough to share.
   int level = first_level(box, size, detail::CrossingPool::Loan(pool)->has_bounds());
   Cells coarse = detail::crossed(pool, d, cover(grid, box, level), level, context);
   while (level > 0 && !coarse.empty() && static_cast<Index>(coarse.size()) / d < kCoarseCells) {
