@@ -8,7 +8,14 @@
 
 #include "taut/core/threads.hpp"
 
-#ifdef TAUT_THREADS
+// TBB's own synchronisation is invisible to the thread sanitizer: under it, plain threads take its place.
+#if defined(TAUT_THREADS) && defined(__SANITIZE_THREAD__)
+#define TAUT_PLAIN_THREADS
+#include <exception>
+#include <mutex>
+#include <vector>
+#elif defined(TAUT_THREADS)
+#define TAUT_TBB
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
@@ -16,6 +23,34 @@
 #endif
 
 namespace taut::detail {
+namespace {
+
+#ifdef TAUT_PLAIN_THREADS
+constexpr int kPlainThreads = 4;  // however few cores there are
+
+template <class RunBlock>
+void run_on_plain_threads(Index num_threads, Index num_blocks, const RunBlock& run_block) {
+  std::atomic<Index> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto work = [&] {
+    try {
+      for (Index block = next++; block < num_blocks; block = next++) run_block(block);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = num_blocks;
+    }
+  };
+  std::vector<std::jthread> others;
+  for (Index i = 1; i < num_threads; ++i) others.emplace_back(work);
+  work();
+  others.clear();
+  if (failure) std::rethrow_exception(failure);
+}
+#endif
+
+}  // namespace
 
 void parallel_for(const Context& context, Index begin, Index end, Index grain,
                   const std::function<void(Index first, Index last)>& body) {
@@ -27,7 +62,10 @@ void parallel_for(const Context& context, Index begin, Index end, Index grain,
     const Index first = begin + block * grain;
     body(first, std::min(first + grain, end));
   };
-#ifdef TAUT_THREADS
+#ifdef TAUT_PLAIN_THREADS
+  if (num_blocks > 1 && context.threads != 1) return run_on_plain_threads(num_threads(context), num_blocks, run_block);
+#endif
+#ifdef TAUT_TBB
   if (num_blocks > 1 && context.threads != 1) {
     const auto run_blocks = [&](const tbb::blocked_range<Index>& range) {
       for (Index block = range.begin(); block != range.end(); ++block) run_block(block);
@@ -48,7 +86,9 @@ void parallel_for(const Context& context, Index begin, Index end, Index grain,
 }
 
 Index num_threads(const Context& context) {
-#ifdef TAUT_THREADS
+#if defined(TAUT_PLAIN_THREADS)
+  return context.threads > 0 ? context.threads : kPlainThreads;
+#elif defined(TAUT_TBB)
   const int num_cores = tbb::info::default_concurrency();
   // More than there are cores would make TBB print a warning.
   return context.threads > 0 ? std::min(context.threads, num_cores) : num_cores;
@@ -63,7 +103,7 @@ Index num_threads(const Context& context) {
 namespace taut {
 
 std::jthread start_threads() {
-#ifdef TAUT_THREADS
+#ifdef TAUT_TBB
   static constexpr std::chrono::microseconds kLongest(300);  // for a thread to appear
   const auto start = [] {
     const auto until = std::chrono::steady_clock::now() + kLongest;
