@@ -104,13 +104,13 @@ namespace taut {
 
 std::jthread start_threads() {
 #ifdef TAUT_TBB
-  static constexpr std::chrono::microseconds kLongest(300);  // for a thread to appear
+  static constexpr std::chrono::microseconds kLongest(300);  // for the next thread to appear
   const auto start = [] {
-    const auto until = std::chrono::steady_clock::now() + kLongest;
     const Index num_threads = detail::num_threads(Context{});
     std::atomic<Index> num_here = 0;
     detail::parallel_for(Context{}, 0, num_threads, 1, [&](Index, Index) {
       ++num_here;
+      const auto until = std::chrono::steady_clock::now() + kLongest;
       while (num_here < num_threads && std::chrono::steady_clock::now() < until) std::this_thread::yield();
     });
   };
