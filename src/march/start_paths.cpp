@@ -32,11 +32,12 @@ constexpr double kEndCells = 4;
 /// The following are relative to the distance from the slice to the nearer end.
 /// Accuracy of s: hollows of s less deep are noise.
 constexpr double kNoise = 2e-3;
-/// Crossings closer to each other than this, or than a few cells, are one way.
-constexpr double kSpread = 0.1;
-constexpr double kSpreadCells = 0.8;
-/// Where s rises by no more than this, further crossings are tried. On a plane, s rises by more within kSpread.
+/// Where s rises by no more than this, further crossings are tried. On a plane, s rises by more within the usual
+/// spread.
 constexpr double kFlat = 0.008;
+
+/// Crossings closer to each other than so many cells are one way.
+constexpr double kSpreadCells = 0.8;
 
 /// A cell of a slice.
 struct BandCell {
@@ -131,7 +132,7 @@ class Ways {
     const bool first = paths_.empty();
     if (first) least_ = band.front().length;
     const double lever = (least_ - std::abs(difference)) / 2;
-    const double spread = std::max(kSpread * lever, kSpreadCells * cells_.grid().size());
+    const double spread = std::max(options_.spread * lever, kSpreadCells * cells_.grid().size());
     std::vector<BandCell> lowest;  // of the hollows
     for (const std::size_t b : hollows<D, K>(cells_, surroundings_, band, kNoise * lever, place_)) {
       if (band[b].length > (1 + options_.excess) * least_) break;
@@ -214,8 +215,8 @@ std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCel
       from_p.distance.size() > cells.num_cells() || from_q.distance.size() > cells.num_cells()) {
     throw InvalidArgument("start_paths: needs two convergent fields of one source each on the cells given");
   }
-  if (!(options.excess >= 0) || options.max_paths < 1) {
-    throw InvalidArgument("start_paths: excess must not be negative, and at least one path be asked for");
+  if (!(options.excess >= 0) || options.max_paths < 1 || !(options.spread > 0)) {
+    throw InvalidArgument("start_paths: excess must not be negative, spread positive, and at least one path asked for");
   }
   return with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
     return Ways<D, K>(surface, cells, map, from_p, from_q, options, context).find();

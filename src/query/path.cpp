@@ -323,9 +323,13 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   Impl& impl = *impl_;
   detail::check_point(impl.surface, p, "start");
   detail::check_point(impl.surface, q, "end");
+  const detail::Stopwatch watch;
   impl.finder.prepare(chord(p, q));
+  const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
-  return impl.between(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+  PathResult result = impl.between(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+  result.seconds.cells += box_seconds;
+  return result;
 }
 
 void PathSolver::expect(const PointsIn& near, Index num_pairs) {

@@ -53,6 +53,7 @@ SharpBends::SharpBends(const Surface& surface, const SurfaceCells& cells, const 
   std::vector<Index> around;
   for (Index i = 0; i < cells.num_cells(); ++i) {
     if (sharp[static_cast<std::size_t>(i)] == 0) continue;
+    any_ = true;
     neighbours.around(i, around);
     for (const Index j : around) near_[static_cast<std::size_t>(j)] = 1;
   }

@@ -19,6 +19,8 @@ class SharpBends {
   SharpBends(const Surface& surface, const SurfaceCells& cells, const NeighbourIndex<3>& neighbours,
              const Context& context);
 
+  /// Is there such a place in any cell.
+  [[nodiscard]] bool any() const { return any_; }
   /// For each point x (3 x m) of the surface 1 if it lies next to such a place, by the cells, or in one, by how fast
   /// the normal turns at the point itself: opposite sides of a needle look like two sheets to cells. Else 0.
   [[nodiscard]] std::vector<std::uint8_t> at(const PointsIn& x) const;
@@ -31,6 +33,7 @@ class SharpBends {
   const Surface& surface_;
   const SurfaceCells& cells_;
   std::vector<std::uint8_t> near_;  // is a cell, or one around it, where the surface bends so
+  bool any_ = false;
 };
 
 }  // namespace taut::detail

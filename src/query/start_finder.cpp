@@ -24,6 +24,8 @@ namespace {
 
 constexpr Index kMostRivals = 16;
 constexpr Index kMostWaysRound = 64;
+/// Over rims, places close to each other lead to different geodesics: StartPathOptions::spread.
+constexpr double kSpreadOverBends = 0.04;
 
 // The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
 constexpr double kTableTurn = 0.85;  // most that the normal turns from one of its cells to the next, radians
@@ -236,10 +238,10 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(ends(p, q));
   if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
   if (rivals) {
-    starts.paths = start_paths_over(
-        surface_, cells, ground.map.get(), from_p, *from_q,
-        {.excess = options_.all ? kInfinity : kExcess, .max_paths = options_.all ? kMostWaysRound : kMostRivals},
-        context_);
+    StartPathOptions options{.excess = kExcess, .max_paths = kMostRivals};
+    if (options_.all) options = {.excess = kInfinity, .max_paths = kMostWaysRound};
+    if (ground.bends && ground.bends->any()) options.spread = kSpreadOverBends;
+    starts.paths = start_paths_over(surface_, cells, ground.map.get(), from_p, *from_q, options, context_);
   }
   if ((rivals || at_spike) && ground.bends) add_past_bends(ground, from_p, *from_q, starts);
   if (arrives && starts.paths.empty()) {

@@ -77,6 +77,7 @@ TEST(StartPaths, RefusesFieldsThatDoNotFit) {
   EXPECT_THROW((void)start_paths(sphere, cells, convergent, dijkstra), InvalidArgument);
   EXPECT_THROW((void)start_paths(sphere, cells, convergent, convergent, {.excess = -1}), InvalidArgument);
   EXPECT_THROW((void)start_paths(sphere, cells, convergent, convergent, {.max_paths = 0}), InvalidArgument);
+  EXPECT_THROW((void)start_paths(sphere, cells, convergent, convergent, {.spread = 0}), InvalidArgument);
 }
 
 }  // namespace

@@ -360,6 +360,19 @@ TEST(Rivals, AStartThatIsRoughlyKnownHidesNoBetterOne) {
   EXPECT_NEAR(path.length, 0.3429956761896824, 1e-9);
 }
 
+// Over the rims of a flat body with holes, places closer to each other than marched distances are right lead to
+// different geodesics. The lengths are those of paths that there are: the shortest is no longer.
+TEST(Rivals, TheRimsOfAFlatBodyAreCrossedInManyPlaces) {
+  PathSolver solver(parse_surface("(x^2*(1.21 - x^2)^2*(3.8 - x^2)^3 - 10*y^2)^2 + 60*z^2 = 2"));
+  const auto length = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { return solver.solve(p, q).length; };
+  EXPECT_LE(length({-1.3229591005614521, -0.66846361023935996, -0.18235416316113351},
+                   {1.6364053095406619, 0.8979327920937622, 0.18220331588901931}),
+            5.322768466);
+  EXPECT_LE(length({1.3780075063382817, 0.78689878813976704, 0.18257418563583463},
+                   {-1.6386342838276768, -0.89503504206206441, -0.18223859881454177}),
+            5.450846866);
+}
+
 // Next to the apex of a cone no cell tells on which side of it a way begins. The truth: the cone unrolled into the
 // plane.
 class NearTheApex : public testing::TestWithParam<double> {};

@@ -34,9 +34,9 @@ class DistanceTable {
   [[nodiscard]] double upper_bound(const VectorIn& p, const VectorIn& q) const;
   /// As the function start_paths on fields from p and q: one start for each way that may be the shortest, if marched
   /// distances are wrong by no more than `options.excess`. Every way passes landmarks at most half a spacing off; what
-  /// such a detour may cost decides which of them are looked at. Lengths are those of the ways past a landmark, by the
-  /// table. Empty where the table cannot tell: the ends are within a few spacings of each other, or one of them is in
-  /// no cell, or no way leads from one to the other.
+  /// such a detour may cost decides which of them are looked at (`options.spread` plays no part). Lengths are those of
+  /// the ways past a landmark, by the table. Empty where the table cannot tell: the ends are within a few spacings of
+  /// each other, or one of them is in no cell, or no way leads from one to the other.
   [[nodiscard]] std::vector<StartPath> start_paths(const VectorIn& p, const VectorIn& q,
                                                    const StartPathOptions& options = {}) const;
 

@@ -19,6 +19,9 @@ struct StartPathOptions {
   /// Ways round up to this part longer than the shortest are taken; infinity = all of them.
   double excess = 0.02;
   Index max_paths = 8;  ///< >= 1
+  /// Starts through places closer to each other than this part of the distance to the nearer end, > 0, or than 0.8
+  /// cells, count as one. On a smooth surface they lead to one geodesic.
+  double spread = 0.1;
 };
 
 /// One start for each way round from p to q, shortest first. With the distances u_p and u_q from both ends, every

@@ -43,7 +43,7 @@ struct PathOptions {
 
 /// Wall-clock seconds of each stage. Stages shared by several paths count for the first of them.
 struct PathSeconds {
-  double cells = 0;
+  double cells = 0;  ///< with the search for a box
   double march = 0;
   double correct = 0;
 };
