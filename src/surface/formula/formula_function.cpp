@@ -72,8 +72,8 @@ double* FormulaEvaluator::slots(std::size_t count) {
 
 std::size_t FormulaEvaluator::block_size(std::size_t slots, std::size_t n) const {
   const std::size_t fitting = kBlockBytes / sizeof(double) / std::max<std::size_t>(slots, 1);
-  const std::size_t wanted = std::min(std::clamp(fitting, kMinBlock, kMaxBlock), (n + step_ - 1) / step_ * step_);
-  return std::max(step_, wanted / step_ * step_);
+  const auto whole = [&](std::size_t lanes) { return lanes & ~(step_ - 1); };  // vectors: step_ is a power of two
+  return std::max(step_, whole(std::min(std::clamp(fitting, kMinBlock, kMaxBlock), n + step_ - 1)));
 }
 
 void FormulaEvaluator::run(const Tape& tape, const PointArrays& arrays, std::size_t n) {

@@ -21,12 +21,26 @@ struct Block {
   [[nodiscard]] double* operator[](std::uint32_t slot) const { return slots + slot * size; }
 };
 
+/// body(i) for each vector of a block, i its first lane: four a turn, for blocks are short.
+template <class Body>
+HWY_INLINE void for_vectors(const Block& block, const Body& body) {
+  const std::size_t step = hn::Lanes(D());
+  std::size_t i = 0;
+  for (; i + 4 * step <= block.size; i += 4 * step) {
+    body(i);
+    body(i + step);
+    body(i + 2 * step);
+    body(i + 3 * step);
+  }
+  for (; i < block.size; i += step) body(i);
+}
+
 template <class F>
 HWY_INLINE void map1(const Instruction& ins, const Block& block, const F& f) {
   const D d;
   const double* a = block[ins.a];
   double* result = block[ins.dst];
-  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(f(hn::Load(d, a + i)), d, result + i);
+  for_vectors(block, [&](std::size_t i) { hn::Store(f(hn::Load(d, a + i)), d, result + i); });
 }
 
 template <class F>
@@ -35,9 +49,7 @@ HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
   const double* a = block[ins.a];
   const double* b = block[ins.b];
   double* result = block[ins.dst];
-  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
-    hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i);
-  }
+  for_vectors(block, [&](std::size_t i) { hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i); });
 }
 
 template <class F>
@@ -66,7 +78,7 @@ void map_fused(const Instruction& ins, const Block& block) {
   double* result = block[ins.dst];
   const V value = lanes(ins.value);
   const V value2 = lanes(ins.value2);
-  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
+  for_vectors(block, [&](std::size_t i) {
     const V a = hn::Load(d, slot_a + i);
     const V b = reads_b ? hn::Load(d, slot_b + i) : value;
     const V c = reads_c ? hn::Load(d, slot_c + i) : value2;
@@ -81,7 +93,7 @@ void map_fused(const Instruction& ins, const Block& block) {
     if constexpr (second == SecondOp::from || second == SecondOp::from_c) t = hn::Sub(c, t);
     if constexpr (second == SecondOp::square) t = hn::Mul(t, t);
     hn::Store(t, d, result + i);
-  }
+  });
 }
 
 using FusedKernel = void (*)(const Instruction&, const Block&);
@@ -151,7 +163,65 @@ HWY_INLINE void read_rows(const double* from, std::size_t stride, std::size_t co
   load_points<N>(rest, slots, i);
 }
 
-/// N slots into the N entries of each point: in small square blocks that are transposed in registers.
+#if HWY_TARGET <= HWY_AVX2  // AVX2 and AVX-512
+constexpr hn::CappedTag<double, 4> kFour;
+using Four = hn::Vec<hn::CappedTag<double, 4>>;
+
+/// Four points of N entries each, N even: in square blocks that are transposed.
+template <std::uint32_t N>
+HWY_INLINE void write_four_even(double* HWY_RESTRICT out, const double* const* slots, std::size_t j) {
+  const hn::CappedTag<double, 2> two;
+  constexpr std::uint32_t kFours = N / 4 * 4;
+  for (std::uint32_t e = 0; e < kFours; e += 4) {
+    const Four a = hn::Load(kFour, slots[e] + j);
+    const Four b = hn::Load(kFour, slots[e + 1] + j);
+    const Four c = hn::Load(kFour, slots[e + 2] + j);
+    const Four f = hn::Load(kFour, slots[e + 3] + j);
+    const Four ab_even = hn::InterleaveLower(kFour, a, b);  // a0 b0 a2 b2
+    const Four ab_odd = hn::InterleaveUpper(kFour, a, b);   // a1 b1 a3 b3
+    const Four cf_even = hn::InterleaveLower(kFour, c, f);
+    const Four cf_odd = hn::InterleaveUpper(kFour, c, f);
+    hn::StoreU(hn::ConcatLowerLower(kFour, cf_even, ab_even), kFour, out + e);
+    hn::StoreU(hn::ConcatLowerLower(kFour, cf_odd, ab_odd), kFour, out + N + e);
+    hn::StoreU(hn::ConcatUpperUpper(kFour, cf_even, ab_even), kFour, out + 2 * N + e);
+    hn::StoreU(hn::ConcatUpperUpper(kFour, cf_odd, ab_odd), kFour, out + 3 * N + e);
+  }
+  for (std::uint32_t half = 0; half < 4; half += 2) {
+    for (std::uint32_t e = kFours; e < N; e += 2) {
+      const auto a = hn::Load(two, slots[e] + j + half);
+      const auto b = hn::Load(two, slots[e + 1] + j + half);
+      hn::StoreU(hn::InterleaveLower(two, a, b), two, out + half * N + e);
+      hn::StoreU(hn::InterleaveUpper(two, a, b), two, out + (half + 1) * N + e);
+    }
+  }
+}
+
+/// The same for N odd: two points are N pairs of entries, the one in the middle the last of one point and the first of
+/// the next. Pairs of the first two points are the lower halves, of the other two the upper halves, and are stored one
+/// after the other.
+template <std::uint32_t N>
+HWY_INLINE void write_four_odd(double* HWY_RESTRICT out, const double* const* slots, std::size_t j) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    const Four entry[N] = {hn::Load(kFour, slots[I] + j)...};
+    const auto pair = [&]<std::size_t P>() {
+      constexpr std::size_t kMiddle = N / 2;
+      if constexpr (P < kMiddle) return hn::InterleaveLower(kFour, entry[2 * P], entry[2 * P + 1]);
+      if constexpr (P == kMiddle) return hn::OddEven(entry[0], entry[N - 1]);
+      if constexpr (P > kMiddle) return hn::InterleaveUpper(kFour, entry[2 * P - N], entry[2 * P - N + 1]);
+    };
+    const Four pairs[N] = {pair.template operator()<I>()...};
+    const auto two_pairs = [&]<std::size_t P>() {  // P and P + 1 of 2 N
+      if constexpr (P + 1 < N) return hn::ConcatLowerLower(kFour, pairs[P + 1], pairs[P]);
+      if constexpr (P + 1 == N) return hn::ConcatUpperLower(kFour, pairs[0], pairs[N - 1]);
+      if constexpr (P >= N) return hn::ConcatUpperUpper(kFour, pairs[P + 1 - N], pairs[P - N]);
+    };
+    (hn::StoreU(two_pairs.template operator()<2 * I>(), kFour, out + 4 * I), ...);
+  }
+  (std::make_index_sequence<N>());
+}
+#endif
+
+/// N slots into the N entries of each point.
 template <std::uint32_t N>
 HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const std::uint32_t* rows, const Block& block) {
   const D d;
@@ -166,38 +236,10 @@ HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const st
                             out + 3 * j);
     }
   } else {
-#if HWY_TARGET <= HWY_AVX2  // AVX2 and AVX-512
-    const hn::CappedTag<double, 4> four;
-    const hn::CappedTag<double, 2> two;
-    constexpr std::uint32_t kFours = N / 4 * 4;
-    constexpr std::uint32_t kTwos = N / 2 * 2;
+#if HWY_TARGET <= HWY_AVX2
     for (; j + 4 <= count; j += 4) {
-      double* row = out + j * N;
-      for (std::uint32_t e = 0; e < kFours; e += 4) {
-        const auto a = hn::Load(four, slots[e] + j);
-        const auto b = hn::Load(four, slots[e + 1] + j);
-        const auto c = hn::Load(four, slots[e + 2] + j);
-        const auto f = hn::Load(four, slots[e + 3] + j);
-        const auto ab_even = hn::InterleaveLower(four, a, b);  // a0 b0 a2 b2
-        const auto ab_odd = hn::InterleaveUpper(four, a, b);   // a1 b1 a3 b3
-        const auto cf_even = hn::InterleaveLower(four, c, f);
-        const auto cf_odd = hn::InterleaveUpper(four, c, f);
-        hn::StoreU(hn::ConcatLowerLower(four, cf_even, ab_even), four, row + e);
-        hn::StoreU(hn::ConcatLowerLower(four, cf_odd, ab_odd), four, row + N + e);
-        hn::StoreU(hn::ConcatUpperUpper(four, cf_even, ab_even), four, row + 2 * N + e);
-        hn::StoreU(hn::ConcatUpperUpper(four, cf_odd, ab_odd), four, row + 3 * N + e);
-      }
-      for (std::uint32_t half = 0; half < 4; half += 2) {
-        for (std::uint32_t e = kFours; e < kTwos; e += 2) {
-          const auto a = hn::Load(two, slots[e] + j + half);
-          const auto b = hn::Load(two, slots[e + 1] + j + half);
-          hn::StoreU(hn::InterleaveLower(two, a, b), two, row + half * N + e);
-          hn::StoreU(hn::InterleaveUpper(two, a, b), two, row + (half + 1) * N + e);
-        }
-      }
-      if constexpr (N % 2 != 0) {
-        for (std::uint32_t i = 0; i < 4; ++i) row[i * N + N - 1] = slots[N - 1][j + i];
-      }
+      if constexpr (N % 2 == 0) write_four_even<N>(out + j * N, slots, j);
+      if constexpr (N % 2 != 0) write_four_odd<N>(out + j * N, slots, j);
     }
 #endif
   }
@@ -220,6 +262,10 @@ HWY_INLINE M as_mask(V v) { return hn::MaskFromVec(v); }
 void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, std::size_t count, const Block& block) {
   const D d;
   for (const Instruction& ins : tape.instructions) {
+    if (ins.code >= Code::fused) {  // most are
+      kFusedKernels.kernels[static_cast<int>(ins.code) - static_cast<int>(Code::fused)](ins, block);
+      continue;
+    }
     switch (ins.code) {
       case Code::input: {
         const std::size_t stride = arrays.input_stride[ins.a];
@@ -258,7 +304,7 @@ void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, s
       case Code::constant: {
         double* result = block[ins.dst];
         const V value = lanes(ins.value);
-        for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(value, d, result + i);
+        for_vectors(block, [&](std::size_t i) { hn::Store(value, d, result + i); });
         break;
       }
       case Code::negate: map1(ins, block, [](V a) { return hn::Neg(a); }); break;
@@ -300,7 +346,7 @@ void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, s
       case Code::choose: map3(ins, block, [](V m, V a, V b) { return hn::IfThenElse(as_mask(m), a, b); }); break;
       case Code::keep: map2(ins, block, [](V m, V a) { return hn::IfThenElseZero(as_mask(m), a); }); break;
       case Code::drop: map2(ins, block, [](V m, V a) { return hn::IfThenZeroElse(as_mask(m), a); }); break;
-      default: kFusedKernels.kernels[static_cast<int>(ins.code) - static_cast<int>(Code::fused)](ins, block); break;
+      default: break;
     }
   }
 }
@@ -310,12 +356,16 @@ std::size_t lanes_of_target() { return hn::Lanes(D()); }
 bool any_nan_of_target(const double* x, std::size_t n) {
   const D d;
   const std::size_t step = hn::Lanes(d);
+  // A sum is NaN where a term is, and hardly ever else.
+  V sums[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   std::size_t i = 0;
-  M found = hn::IsNaN(hn::Zero(d));
-  for (; i + step <= n; i += step) found = hn::Or(found, hn::IsNaN(hn::LoadU(d, x + i)));
-  bool any = !hn::AllFalse(d, found);
-  for (; i < n; ++i) any = any || x[i] != x[i];
-  return any;
+  for (; i + 4 * step <= n; i += 4 * step) {
+    for (std::size_t s = 0; s < 4; ++s) sums[s] = hn::Add(sums[s], hn::LoadU(d, x + i + s * step));
+  }
+  const V sum = hn::Add(hn::Add(sums[0], sums[1]), hn::Add(sums[2], sums[3]));
+  if (!hn::AllFalse(d, hn::IsNaN(sum))) i = 0;
+  while (i < n && x[i] == x[i]) ++i;
+  return i < n;
 }
 
 void run_points_of_target(const Tape& tape, const PointArrays& arrays, std::size_t n, std::size_t block,
