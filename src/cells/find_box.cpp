@@ -51,7 +51,8 @@ std::int32_t most_across(Index d, const std::vector<std::int32_t>& cells) {
   return (all.rowwise().maxCoeff() - all.rowwise().minCoeff()).maxCoeff() + 1;
 }
 
-/// The bounding box of the cells that the surface may cross inside `box`, small against it or as many levels below.
+/// The bounding box of the cells that the surface may cross inside `box`: up to d = 3 of cells so small that some
+/// kCellsAcross of them stand side by side, or as small as levels go.
 Shrunk shrink_once(const Surface& surface, const Box& box, const Context& context) {
   const Index d = surface.dim();
   const int most_levels = d <= 3 ? kMostLevels : kMostLevelsAbove3;
