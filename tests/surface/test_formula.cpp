@@ -243,6 +243,32 @@ TEST(Formula, KinksAndPolesHaveDocumentedValues) {
   EXPECT_TRUE(std::isnan(at("x^0.2 + y^0", {kNaN, 1})));
 }
 
+TEST(Formula, NaNInOneCoordinateIsNaNEverywhereAtThatPointAlone) {
+  for (const char* formula :
+       {"x^2+y^2+z^2-1", "x^2+y^2-1", "x^0.5+y+z", "2^x+y+z^y", "min(x,y)+max(y,z)-1", "abs(x)+sign(y)+z"}) {
+    const auto function = parse_function(formula, {.dim = 3});
+    for (int coordinate = 0; coordinate < 3; ++coordinate) {
+      Points x = Points::Constant(3, 9, 0.5);
+      x(coordinate, 4) = kNaN;
+      const Points weight = Points::Ones(1, 9);
+      Points all = Points::Zero(13, 9);
+      Points value(1, 9);
+      Points gradient(3, 9);
+      Points hessian(9, 9);
+      function->make_evaluator()->evaluate({.n = 9,
+                                            .x = x.data(),
+                                            .value = value.data(),
+                                            .jacobian = gradient.data(),
+                                            .weight = weight.data(),
+                                            .hessian = hessian.data()});
+      all << value, gradient, hessian;
+      for (Index j = 0; j < 9; ++j) {
+        EXPECT_EQ(all.col(j).array().isNaN().count(), j == 4 ? 13 : 0) << formula << ", coordinate " << coordinate;
+      }
+    }
+  }
+}
+
 TEST(Formula, AgreesWithSurfacesWrittenByHand) {
   const struct {
     Surface formula;

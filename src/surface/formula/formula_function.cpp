@@ -172,8 +172,8 @@ void FormulaEvaluator::spread_nan(const PointBatch& batch, const double* value, 
   const auto n = static_cast<std::size_t>(batch.n);
   const auto d = static_cast<std::size_t>(dim_);
   const auto k = static_cast<std::size_t>(codim_);
-  const bool in_x = any_nan(batch.x, n * d);
   const bool in_value = any_nan(value, n * k);
+  const bool in_x = (in_value || !program_->value_shows_nan()) && any_nan(batch.x, n * d);
   if (!in_x && !in_value) return;
   for (std::size_t j = 0; j < n; ++j) {
     const bool lost = in_x && any_nan(batch.x + j * d, d);

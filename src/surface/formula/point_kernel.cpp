@@ -1,3 +1,4 @@
+#include <array>
 #include <utility>
 
 #include "surface/formula/kernels.hpp"
@@ -13,38 +14,57 @@ HWY_BEFORE_NAMESPACE();
 namespace taut::detail::HWY_NAMESPACE {
 namespace {
 
-/// The slots of one block.
+/// One block of points: `count` from number `first` on, in `size` lanes, a multiple of the vector length; the lanes
+/// left over repeat the last point.
 struct Block {
+  const Tape& tape;
+  const PointArrays& arrays;
+  std::size_t first;
+  std::size_t count;
   double* slots;
-  std::size_t size;  // lanes, a multiple of the vector length
+  std::size_t size;
 
   [[nodiscard]] double* operator[](std::uint32_t slot) const { return slots + slot * size; }
 };
+
+/// What runs an instruction.
+using Kernel = void (*)(const Instruction&, const Block&);
 
 /// body(i) for each vector of a block, i its first lane: four a turn, for blocks are short.
 template <class Body>
 HWY_INLINE void for_vectors(const Block& block, const Body& body) {
   const std::size_t step = hn::Lanes(D());
+  const std::size_t size = block.size;
   std::size_t i = 0;
-  for (; i + 4 * step <= block.size; i += 4 * step) {
+  for (; i + 4 * step <= size; i += 4 * step) {
     body(i);
     body(i + step);
     body(i + 2 * step);
     body(i + 3 * step);
   }
-  for (; i < block.size; i += step) body(i);
+  for (; i < size; i += step) body(i);
 }
 
-template <class F>
-HWY_INLINE void map1(const Instruction& ins, const Block& block, const F& f) {
+template <auto f>
+void map1(const Instruction& ins, const Block& block) {
   const D d;
   const double* a = block[ins.a];
   double* result = block[ins.dst];
   for_vectors(block, [&](std::size_t i) { hn::Store(f(hn::Load(d, a + i)), d, result + i); });
 }
 
-template <class F>
-HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
+/// f(a, the constant of the instruction).
+template <auto f>
+void map1_c(const Instruction& ins, const Block& block) {
+  const D d;
+  const double* a = block[ins.a];
+  const V c = lanes(ins.value);
+  double* result = block[ins.dst];
+  for_vectors(block, [&](std::size_t i) { hn::Store(f(hn::Load(d, a + i), c), d, result + i); });
+}
+
+template <auto f>
+void map2(const Instruction& ins, const Block& block) {
   const D d;
   const double* a = block[ins.a];
   const double* b = block[ins.b];
@@ -52,19 +72,32 @@ HWY_INLINE void map2(const Instruction& ins, const Block& block, const F& f) {
   for_vectors(block, [&](std::size_t i) { hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i)), d, result + i); });
 }
 
-template <class F>
-HWY_INLINE void map3(const Instruction& ins, const Block& block, const F& f) {
+template <auto f>
+void map3(const Instruction& ins, const Block& block) {
   const D d;
   const double* a = block[ins.a];
   const double* b = block[ins.b];
   const double* c = block[ins.c];
   double* result = block[ins.dst];
-  for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) {
+  for_vectors(block, [&](std::size_t i) {
     hn::Store(f(hn::Load(d, a + i), hn::Load(d, b + i), hn::Load(d, c + i)), d, result + i);
-  }
+  });
 }
 
-template <int kFirst, int kSecond>
+void constant(const Instruction& ins, const Block& block) {
+  const V value = lanes(ins.value);
+  double* result = block[ins.dst];
+  for_vectors(block, [&](std::size_t i) { hn::Store(value, D(), result + i); });
+}
+
+void odd_power(const Instruction& ins, const Block& block) {
+  const D d;
+  const double* a = block[ins.a];
+  double* result = block[ins.dst];
+  for_vectors(block, [&](std::size_t i) { hn::Store(odd_power_lanes(hn::Load(d, a + i), ins.b), d, result + i); });
+}
+
+template <int kFirst, int kSecond, bool kScaled>
 void map_fused(const Instruction& ins, const Block& block) {
   constexpr auto first = static_cast<FirstOp>(kFirst);
   constexpr auto second = static_cast<SecondOp>(kSecond);
@@ -75,9 +108,11 @@ void map_fused(const Instruction& ins, const Block& block) {
   const double* slot_a = block[ins.a];
   const double* slot_b = block[ins.b];
   const double* slot_c = block[ins.c];
+  const double* slot_d = block[ins.d];
   double* result = block[ins.dst];
   const V value = lanes(ins.value);
   const V value2 = lanes(ins.value2);
+  const V value3 = lanes(ins.value3);
   for_vectors(block, [&](std::size_t i) {
     const V a = hn::Load(d, slot_a + i);
     const V b = reads_b ? hn::Load(d, slot_b + i) : value;
@@ -92,28 +127,18 @@ void map_fused(const Instruction& ins, const Block& block) {
     if constexpr (second == SecondOp::minus) t = hn::Sub(t, c);
     if constexpr (second == SecondOp::from || second == SecondOp::from_c) t = hn::Sub(c, t);
     if constexpr (second == SecondOp::square) t = hn::Mul(t, t);
+    if constexpr (kScaled) t = hn::Mul(hn::Mul(t, hn::Load(d, slot_d + i)), value3);
     hn::Store(t, d, result + i);
   });
 }
 
-using FusedKernel = void (*)(const Instruction&, const Block&);
-
-/// Kernels by code, from Code::fused on.
-struct FusedKernels {
-  FusedKernel kernels[kNumFused];
-
-  constexpr FusedKernels() : FusedKernels(std::make_integer_sequence<int, kNumFused>()) {}
-  template <int... I>
-  constexpr explicit FusedKernels(std::integer_sequence<int, I...>)
-      : kernels{map_fused<I / kNumSecond, I % kNumSecond>...} {}
-};
-
-constexpr FusedKernels kFusedKernels;
-
-/// Points [first, first + count) of an input array into a slot; the lanes left over repeat the last point.
-HWY_INLINE void read_input(const double* entry, std::size_t stride, std::size_t count, double* slot, std::size_t size) {
-  for (std::size_t j = 0; j < count; ++j) slot[j] = entry[j * stride];
-  for (std::size_t j = count; j < size; ++j) slot[j] = slot[count - 1];
+/// One entry of each point.
+void read_entry(const Instruction& ins, const Block& block) {
+  const std::size_t stride = block.arrays.input_stride[ins.a];
+  const double* from = block.arrays.input[ins.a] + block.first * stride + ins.b;
+  double* slot = block[ins.dst];
+  for (std::size_t j = 0; j < block.count; ++j) slot[j] = from[j * stride];
+  for (std::size_t j = block.count; j < block.size; ++j) slot[j] = slot[block.count - 1];
 }
 
 /// A vector of points of N coordinates each, taken apart into N slots.
@@ -139,19 +164,23 @@ HWY_INLINE void load_points(const double* from, double* const* slots, std::size_
   }
 }
 
+/// All N entries of each point, taken apart into N slots.
 template <std::uint32_t N>
-HWY_INLINE void read_rows(const double* from, std::size_t stride, std::size_t count, const std::uint32_t* rows,
-                          const Block& block) {
+void read_rows(const Instruction& ins, const Block& block) {
   const D d;
+  const std::size_t stride = block.arrays.input_stride[ins.a];
+  const double* from = block.arrays.input[ins.a] + block.first * stride;
+  const std::uint32_t* rows = block.tape.row_slots.data() + ins.b;
   double* slots[N];
   for (std::uint32_t entry = 0; entry < N; ++entry) slots[entry] = block[rows[entry]];
-  if (count == 1 || stride == 0) {  // one point for all lanes
+  if (block.count == 1 || stride == 0) {  // one point for all lanes
     for (std::uint32_t entry = 0; entry < N; ++entry) {
       const V value = lanes(from[entry]);
       for (std::size_t i = 0; i < block.size; i += hn::Lanes(d)) hn::Store(value, d, slots[entry] + i);
     }
     return;
   }
+  const std::size_t count = block.count;
   std::size_t i = 0;
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) load_points<N>(from + i * N, slots, i);
   if (i == count) return;
@@ -223,8 +252,12 @@ HWY_INLINE void write_four_odd(double* HWY_RESTRICT out, const double* const* sl
 
 /// N slots into the N entries of each point.
 template <std::uint32_t N>
-HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const std::uint32_t* rows, const Block& block) {
+void write_rows(const Instruction& ins, const Block& block) {
+  if (block.arrays.output[ins.c] == nullptr) return;
   const D d;
+  double* HWY_RESTRICT out = block.arrays.output[ins.c] + block.first * N;
+  const std::size_t count = block.count;
+  const std::uint32_t* rows = block.tape.row_slots.data() + ins.b;
   const double* slots[N];
   for (std::uint32_t entry = 0; entry < N; ++entry) slots[entry] = block[rows[entry]];
   std::size_t j = 0;
@@ -248,108 +281,101 @@ HWY_INLINE void write_rows(double* HWY_RESTRICT out, std::size_t count, const st
   }
 }
 
-/// Calls body<N>() for a run-time N in 1 .. kMax.
-template <std::uint32_t kMax, class Body>
-HWY_INLINE void with_size(std::uint32_t n, const Body& body) {
-  [&]<std::uint32_t... I>(std::integer_sequence<std::uint32_t, I...>) {
-    (void)((n == I + 1 ? (body.template operator()<I + 1>(), true) : false) || ...);
-  }
-  (std::make_integer_sequence<std::uint32_t, kMax>());
+/// One entry of each point of an output array, or null if that is not asked for.
+double* output_entry(const Instruction& ins, const Block& block) {
+  double* out = block.arrays.output[ins.c];
+  return out == nullptr ? nullptr : out + block.first * block.arrays.output_stride[ins.c] + ins.b;
+}
+
+void write_entry(const Instruction& ins, const Block& block) {
+  double* out = output_entry(ins, block);
+  if (out == nullptr) return;
+  const std::size_t stride = block.arrays.output_stride[ins.c];
+  const double* slot = block[ins.a];
+  for (std::size_t j = 0; j < block.count; ++j) out[j * stride] = slot[j];
+}
+
+void write_constant(const Instruction& ins, const Block& block) {
+  double* out = output_entry(ins, block);
+  if (out == nullptr) return;
+  const std::size_t stride = block.arrays.output_stride[ins.c];
+  for (std::size_t j = 0; j < block.count; ++j) out[j * stride] = ins.value;
+}
+
+template <std::uint32_t... I>
+constexpr std::array<Kernel, sizeof...(I)> read_rows_by_size(std::integer_sequence<std::uint32_t, I...>) {
+  return {read_rows<I + 1>...};
+}
+template <std::uint32_t... I>
+constexpr std::array<Kernel, sizeof...(I)> write_rows_by_size(std::integer_sequence<std::uint32_t, I...>) {
+  return {write_rows<I + 1>...};
+}
+
+void read_row(const Instruction& ins, const Block& block) {
+  static constexpr auto kBySize = read_rows_by_size(std::make_integer_sequence<std::uint32_t, kMaxInputRow>());
+  kBySize[ins.c - 1](ins, block);
+}
+
+void write_row(const Instruction& ins, const Block& block) {
+  static constexpr auto kBySize = write_rows_by_size(std::make_integer_sequence<std::uint32_t, kMaxOutputRow>());
+  kBySize[ins.a - 1](ins, block);
 }
 
 HWY_INLINE M as_mask(V v) { return hn::MaskFromVec(v); }
 
-void run_block(const Tape& tape, const PointArrays& arrays, std::size_t first, std::size_t count, const Block& block) {
-  const D d;
-  for (const Instruction& ins : tape.instructions) {
-    if (ins.code >= Code::fused) {  // most are
-      kFusedKernels.kernels[static_cast<int>(ins.code) - static_cast<int>(Code::fused)](ins, block);
-      continue;
-    }
-    switch (ins.code) {
-      case Code::input: {
-        const std::size_t stride = arrays.input_stride[ins.a];
-        read_input(arrays.input[ins.a] + first * stride + ins.b, stride, count, block[ins.dst], block.size);
-        break;
-      }
-      case Code::input_row: {
-        const std::size_t stride = arrays.input_stride[ins.a];
-        const double* from = arrays.input[ins.a] + first * stride;
-        const std::uint32_t* rows = tape.row_slots.data() + ins.b;
-        with_size<kMaxInputRow>(ins.c, [&]<std::uint32_t N>() { read_rows<N>(from, stride, count, rows, block); });
-        break;
-      }
-      case Code::output_row: {
-        if (arrays.output[ins.c] == nullptr) break;
-        double* out = arrays.output[ins.c] + first * ins.a;
-        const std::uint32_t* rows = tape.row_slots.data() + ins.b;
-        with_size<kMaxOutputRow>(ins.a, [&]<std::uint32_t N>() { write_rows<N>(out, count, rows, block); });
-        break;
-      }
-      case Code::output: {
-        if (arrays.output[ins.c] == nullptr) break;
-        const std::size_t stride = arrays.output_stride[ins.c];
-        double* out = arrays.output[ins.c] + first * stride + ins.b;
-        const double* slot = block[ins.a];
-        for (std::size_t j = 0; j < count; ++j) out[j * stride] = slot[j];
-        break;
-      }
-      case Code::output_constant: {
-        if (arrays.output[ins.c] == nullptr) break;
-        const std::size_t stride = arrays.output_stride[ins.c];
-        double* out = arrays.output[ins.c] + first * stride + ins.b;
-        for (std::size_t j = 0; j < count; ++j) out[j * stride] = ins.value;
-        break;
-      }
-      case Code::constant: {
-        double* result = block[ins.dst];
-        const V value = lanes(ins.value);
-        for_vectors(block, [&](std::size_t i) { hn::Store(value, d, result + i); });
-        break;
-      }
-      case Code::negate: map1(ins, block, [](V a) { return hn::Neg(a); }); break;
-      case Code::absolute: map1(ins, block, [](V a) { return hn::Abs(a); }); break;
-      case Code::sign: map1(ins, block, [](V a) { return sign_lanes(a); }); break;
-      case Code::square: map1(ins, block, [](V a) { return hn::Mul(a, a); }); break;
-      case Code::odd_power: {
-        const std::uint32_t n = ins.b;
-        map1(ins, block, [n](V a) { return odd_power_lanes(a, n); });
-        break;
-      }
-      case Code::sqrt: map1(ins, block, [](V a) { return hn::Sqrt(a); }); break;
-      case Code::cbrt: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::cbrt(x); }); }); break;
-      case Code::exp: map1(ins, block, [](V a) { return exp_lanes(a); }); break;
-      case Code::log: map1(ins, block, [](V a) { return log_lanes(a); }); break;
-      case Code::sin: map1(ins, block, [](V a) { return sin_lanes(a); }); break;
-      case Code::cos: map1(ins, block, [](V a) { return cos_lanes(a); }); break;
-      case Code::tan: map1(ins, block, [](V a) { return tan_lanes(a); }); break;
-      case Code::asin: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::asin(x); }); }); break;
-      case Code::acos: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::acos(x); }); }); break;
-      case Code::atan: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::atan(x); }); }); break;
-      case Code::sinh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::sinh(x); }); }); break;
-      case Code::cosh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::cosh(x); }); }); break;
-      case Code::tanh: map1(ins, block, [](V a) { return each_lane(a, [](double x) { return std::tanh(x); }); }); break;
-      case Code::add: map2(ins, block, [](V a, V b) { return hn::Add(a, b); }); break;
-      case Code::subtract: map2(ins, block, [](V a, V b) { return hn::Sub(a, b); }); break;
-      case Code::multiply: map2(ins, block, [](V a, V b) { return hn::Mul(a, b); }); break;
-      case Code::divide: map2(ins, block, [](V a, V b) { return hn::Div(a, b); }); break;
-      case Code::add_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Add(a, c); }); break;
-      case Code::c_subtract: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Sub(c, a); }); break;
-      case Code::multiply_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Mul(a, c); }); break;
-      case Code::divide_c: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Div(a, c); }); break;
-      case Code::c_divide: map1(ins, block, [c = lanes(ins.value)](V a) { return hn::Div(c, a); }); break;
-      case Code::minimum: map2(ins, block, [](V a, V b) { return minimum_lanes(a, b); }); break;
-      case Code::maximum: map2(ins, block, [](V a, V b) { return maximum_lanes(a, b); }); break;
-      case Code::power: map2(ins, block, [](V a, V b) { return power_lanes(a, b); }); break;
-      case Code::atan2: map2(ins, block, [](V a, V b) { return atan2_lanes(a, b); }); break;
-      case Code::less_equal: map2(ins, block, [](V a, V b) { return hn::VecFromMask(D(), hn::Le(a, b)); }); break;
-      case Code::choose: map3(ins, block, [](V m, V a, V b) { return hn::IfThenElse(as_mask(m), a, b); }); break;
-      case Code::keep: map2(ins, block, [](V m, V a) { return hn::IfThenElseZero(as_mask(m), a); }); break;
-      case Code::drop: map2(ins, block, [](V m, V a) { return hn::IfThenZeroElse(as_mask(m), a); }); break;
-      default: break;
-    }
-  }
+template <int... I>
+constexpr void set_fused(Kernel* kernels, std::integer_sequence<int, I...>) {
+  ((kernels[I] = map_fused<I % kNumPairs / kNumSecond, I % kNumSecond, (I >= kNumPairs)>), ...);
 }
+
+/// By code.
+constexpr auto kKernels = [] {
+  std::array<Kernel, kNumCodes> kernels{};
+  const auto set = [&](Code code, Kernel kernel) { kernels[static_cast<std::size_t>(code)] = kernel; };
+  set(Code::input, read_entry);
+  set(Code::input_row, read_row);
+  set(Code::output, write_entry);
+  set(Code::output_row, write_row);
+  set(Code::output_constant, write_constant);
+  set(Code::constant, constant);
+  set(Code::negate, map1<[](V a) { return hn::Neg(a); }>);
+  set(Code::absolute, map1<[](V a) { return hn::Abs(a); }>);
+  set(Code::sign, map1<[](V a) { return sign_lanes(a); }>);
+  set(Code::square, map1<[](V a) { return hn::Mul(a, a); }>);
+  set(Code::odd_power, odd_power);
+  set(Code::sqrt, map1<[](V a) { return hn::Sqrt(a); }>);
+  set(Code::cbrt, map1<[](V a) { return each_lane(a, [](double x) { return std::cbrt(x); }); }>);
+  set(Code::exp, map1<[](V a) { return exp_lanes(a); }>);
+  set(Code::log, map1<[](V a) { return log_lanes(a); }>);
+  set(Code::sin, map1<[](V a) { return sin_lanes(a); }>);
+  set(Code::cos, map1<[](V a) { return cos_lanes(a); }>);
+  set(Code::tan, map1<[](V a) { return tan_lanes(a); }>);
+  set(Code::asin, map1<[](V a) { return each_lane(a, [](double x) { return std::asin(x); }); }>);
+  set(Code::acos, map1<[](V a) { return each_lane(a, [](double x) { return std::acos(x); }); }>);
+  set(Code::atan, map1<[](V a) { return each_lane(a, [](double x) { return std::atan(x); }); }>);
+  set(Code::sinh, map1<[](V a) { return each_lane(a, [](double x) { return std::sinh(x); }); }>);
+  set(Code::cosh, map1<[](V a) { return each_lane(a, [](double x) { return std::cosh(x); }); }>);
+  set(Code::tanh, map1<[](V a) { return each_lane(a, [](double x) { return std::tanh(x); }); }>);
+  set(Code::add, map2<[](V a, V b) { return hn::Add(a, b); }>);
+  set(Code::add_c, map1_c<[](V a, V c) { return hn::Add(a, c); }>);
+  set(Code::subtract, map2<[](V a, V b) { return hn::Sub(a, b); }>);
+  set(Code::c_subtract, map1_c<[](V a, V c) { return hn::Sub(c, a); }>);
+  set(Code::multiply, map2<[](V a, V b) { return hn::Mul(a, b); }>);
+  set(Code::multiply_c, map1_c<[](V a, V c) { return hn::Mul(a, c); }>);
+  set(Code::divide, map2<[](V a, V b) { return hn::Div(a, b); }>);
+  set(Code::divide_c, map1_c<[](V a, V c) { return hn::Div(a, c); }>);
+  set(Code::c_divide, map1_c<[](V a, V c) { return hn::Div(c, a); }>);
+  set(Code::minimum, map2<[](V a, V b) { return minimum_lanes(a, b); }>);
+  set(Code::maximum, map2<[](V a, V b) { return maximum_lanes(a, b); }>);
+  set(Code::power, map2<[](V a, V b) { return power_lanes(a, b); }>);
+  set(Code::atan2, map2<[](V a, V b) { return atan2_lanes(a, b); }>);
+  set(Code::less_equal, map2<[](V a, V b) { return hn::VecFromMask(D(), hn::Le(a, b)); }>);
+  set(Code::choose, map3<[](V m, V a, V b) { return hn::IfThenElse(as_mask(m), a, b); }>);
+  set(Code::keep, map2<[](V m, V a) { return hn::IfThenElseZero(as_mask(m), a); }>);
+  set(Code::drop, map2<[](V m, V a) { return hn::IfThenZeroElse(as_mask(m), a); }>);
+  set_fused(kernels.data() + static_cast<std::size_t>(Code::fused), std::make_integer_sequence<int, kNumFused>());
+  return kernels;
+}();
 
 std::size_t lanes_of_target() { return hn::Lanes(D()); }
 
@@ -373,7 +399,8 @@ void run_points_of_target(const Tape& tape, const PointArrays& arrays, std::size
   const std::size_t step = hn::Lanes(D());
   for (std::size_t first = 0; first < n; first += block) {
     const std::size_t count = n - first < block ? n - first : block;
-    run_block(tape, arrays, first, count, {slots, (count + step - 1) / step * step});
+    const Block points{tape, arrays, first, count, slots, (count + step - 1) / step * step};
+    for (const Instruction& ins : tape.instructions) kKernels[static_cast<std::size_t>(ins.code)](ins, points);
   }
 }
 

@@ -24,6 +24,22 @@ std::vector<NodeId> nodes_of(const std::vector<Partial>& partials) {
 FormulaProgram::FormulaProgram(Graph graph, std::vector<NodeId> components, Index dim)
     : dim_(dim), components_(std::move(components)), graph_(std::move(graph)) {
   graph_.fold_exactly();
+  value_shows_nan_ = find_nan();
+}
+
+/// All operations but powers (NaN^0 = 1) pass a NaN on, so that it reaches the component that reads it.
+bool FormulaProgram::find_nan() const {
+  std::vector<bool> passes(graph_.size());
+  for (const NodeId component : components_) passes[component] = true;
+  Index variables = 0;
+  for (std::size_t id = graph_.size(); id-- > 0;) {
+    const Node& node = graph_[static_cast<NodeId>(id)];
+    if (!passes[id] || node.op == Op::power) continue;
+    if (node.op == Op::variable) ++variables;
+    const NodeId operands[3] = {node.a, node.b, node.c};
+    for (int i = 0; i < operand_count(node.op); ++i) passes[operands[i]] = true;
+  }
+  return variables == dim_;
 }
 
 std::vector<InputArray> FormulaProgram::inputs() const {

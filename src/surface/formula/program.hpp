@@ -23,6 +23,8 @@ class FormulaProgram {
 
   [[nodiscard]] Index dim() const { return dim_; }
   [[nodiscard]] Index codim() const { return static_cast<Index>(components_.size()); }
+  /// Is some component NaN wherever a coordinate is.
+  [[nodiscard]] bool value_shows_nan() const { return value_shows_nan_; }
 
   [[nodiscard]] const Tape& value() const;
   /// Value, for boxes.
@@ -42,11 +44,13 @@ class FormulaProgram {
   [[nodiscard]] Tape compile_rows(const std::vector<std::uint32_t>& sizes, std::vector<Output> outputs,
                                   bool fuse = true) const;
   [[nodiscard]] bool derivatives_tighten() const;
+  [[nodiscard]] bool find_nan() const;
   [[nodiscard]] NodeId weighted(NodeId node) const;
   [[nodiscard]] std::vector<InputArray> inputs() const;
 
   Index dim_;
   std::vector<NodeId> components_;
+  bool value_shows_nan_;
 
   // The graph grows under the mutex as derivatives are asked for. In which order they are does not show in any number:
   // a node's value depends on its operands alone.

@@ -1,6 +1,7 @@
 #include "surface/formula/tape.hpp"
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <utility>
 
@@ -43,20 +44,18 @@ Code code_of(Op op) {
   }
 }
 
-/// Which operands of a node must lie in slots, and what code takes the others as constants.
+/// Which operands of an instruction must lie in slots, and what code takes the others as constants.
 struct Form {
   Code code;
-  NodeId slots[3] = {kNoNode, kNoNode, kNoNode};
-  int num_slots = 0;
+  std::array<NodeId, 4> slots{kNoNode, kNoNode, kNoNode, kNoNode};  // for a, b, c, d
   double value = 0;
   double value2 = 0;
-  bool third = false;  // fused: the last slot is operand c whatever the number of slots
+  double value3 = 1;
 };
 
 Form form_of(const Graph& graph, NodeId id) {
   const Node& node = graph[id];
   Form form{code_of(node.op)};
-  const auto slot = [&](NodeId operand) { form.slots[form.num_slots++] = operand; };
   if (node.op == Op::constant) {
     form.value = node.value;
     return form;
@@ -72,7 +71,7 @@ Form form_of(const Graph& graph, NodeId id) {
     const auto with_constant = [&](Code code) {
       form.code = code;
       form.value = value;
-      slot(right ? node.a : node.b);
+      form.slots[0] = right ? node.a : node.b;
       return form;
     };
     if (node.op == Op::add) return with_constant(Code::add_c);
@@ -80,9 +79,9 @@ Form form_of(const Graph& graph, NodeId id) {
     if (node.op == Op::divide) return with_constant(right ? Code::divide_c : Code::c_divide);
     if (node.op == Op::subtract && !right) return with_constant(Code::c_subtract);
   }
-  slot(node.a);
-  if (count > 1) slot(node.b);
-  if (count > 2) slot(node.c);
+  form.slots[0] = node.a;
+  if (count > 1) form.slots[1] = node.b;
+  if (count > 2) form.slots[2] = node.c;
   return form;
 }
 
@@ -99,7 +98,7 @@ std::optional<FirstOp> first_op(Code code) {
 }
 
 /// The second operation of `form` when operand number `position` is the result of the first.
-std::optional<SecondOp> second_op(const Form& form, int position) {
+std::optional<SecondOp> second_op(const Form& form, std::size_t position) {
   switch (form.code) {
     case Code::add: return SecondOp::add;
     case Code::add_c: return SecondOp::add_c;
@@ -129,6 +128,7 @@ class Compiler {
   [[nodiscard]] bool in_row(const Output& output) const { return output_sizes_[output.array] <= kMaxOutputRow; }
   void find_uses();
   void choose_fusions();
+  [[nodiscard]] bool fuses(const Form& outer, std::size_t position) const;
   [[nodiscard]] Form form(NodeId id) const;
   void emit(NodeId id);
   void emit_input(NodeId id);
@@ -149,6 +149,7 @@ class Compiler {
   std::vector<NodeId> order_;
   std::vector<std::uint32_t> uses_;  // readers of a node's slot still to come
   std::vector<NodeId> inner_;        // the operand computed in the same instruction, or kNoNode
+  std::vector<int> num_inner_;       // operations of the instruction before this one
   std::vector<bool> absorbed_;       // computed inside of its only user's instruction
   std::vector<std::uint32_t> slot_;
   std::vector<std::uint32_t> free_;
@@ -173,7 +174,9 @@ void Compiler::find_uses() {
   row_nodes_.resize(inputs_.size());
   for (const NodeId id : order_) {
     const Form form = form_of(graph_, id);
-    for (int k = 0; k < form.num_slots; ++k) ++uses_[form.slots[k]];
+    for (const NodeId operand : form.slots) {
+      if (operand != kNoNode) ++uses_[operand];
+    }
     if (form.code != Code::input) continue;
     for (std::size_t array = 0; array < inputs_.size(); ++array) {
       const std::uint32_t entry = graph_[id].a - inputs_[array].first;
@@ -184,34 +187,53 @@ void Compiler::find_uses() {
   }
 }
 
-/// A node with one reader is computed in that reader's instruction, where there is a code for the two.
+/// Can operand number `position` be computed in the instruction of `outer`: two operations of the table, then, one by
+/// one, the factors of a scaled pair.
+bool Compiler::fuses(const Form& outer, std::size_t position) const {
+  const NodeId operand = outer.slots[position];
+  if (operand == kNoNode || uses_[operand] != 1) return false;
+  switch (num_inner_[operand]) {
+    case 0: return second_op(outer, position) && first_op(form_of(graph_, operand).code);
+    case 1: return outer.code == Code::multiply;
+    case 2: return outer.code == Code::multiply_c;
+    default: return false;
+  }
+}
+
+/// A node with one reader is computed in that reader's instruction, where there is a code for them.
 void Compiler::choose_fusions() {
   inner_.assign(uses_.size(), kNoNode);
+  num_inner_.assign(uses_.size(), 0);
   absorbed_.assign(uses_.size(), false);
   if (!fuse_) return;
   for (const NodeId id : order_) {
     const Form outer = form_of(graph_, id);
-    for (int k = 0; k < outer.num_slots && inner_[id] == kNoNode; ++k) {
-      const NodeId operand = outer.slots[k];
-      if (uses_[operand] != 1 || inner_[operand] != kNoNode || !second_op(outer, k)) continue;
-      if (!first_op(form_of(graph_, operand).code)) continue;
-      inner_[id] = operand;
-      absorbed_[operand] = true;
+    for (std::size_t k = 0; k < outer.slots.size() && inner_[id] == kNoNode; ++k) {
+      if (!fuses(outer, k)) continue;
+      inner_[id] = outer.slots[k];
+      num_inner_[id] = num_inner_[inner_[id]] + 1;
+      absorbed_[inner_[id]] = true;
     }
   }
 }
 
 Form Compiler::form(NodeId id) const {
   const Form outer = form_of(graph_, id);
-  const NodeId inner = inner_[id];
-  if (inner == kNoNode) return outer;
-  const int position = outer.slots[0] == inner ? 0 : 1;
-  Form fused = form_of(graph_, inner);
-  fused.code = fused_code(*first_op(fused.code), *second_op(outer, position));
-  fused.value2 = outer.value;
-  if (outer.num_slots == 2) {
-    fused.slots[fused.num_slots++] = outer.slots[1 - position];
-    fused.third = true;
+  if (num_inner_[id] == 0) return outer;
+  const std::size_t position = outer.slots[0] == inner_[id] ? 0 : 1;
+  const NodeId other = outer.slots[1 - position];
+  Form fused = form(inner_[id]);
+  switch (num_inner_[id]) {
+    case 1:
+      fused.code = fused_code(*first_op(fused.code), *second_op(outer, position));
+      fused.slots[2] = other;
+      fused.value2 = outer.value;
+      break;
+    case 2:
+      fused.code = scaled_code(fused.code);
+      fused.slots[3] = other;
+      break;
+    default: fused.value3 = outer.value;
   }
   return fused;
 }
@@ -268,15 +290,16 @@ void Compiler::emit(NodeId id) {
     emit_input(id);
     return;
   }
-  Instruction instruction{.code = what.code, .value = what.value, .value2 = what.value2};
+  Instruction instruction{.code = what.code, .value = what.value, .value2 = what.value2, .value3 = what.value3};
   if (what.code == Code::odd_power) instruction.b = graph_[id].b;
-  const int in_order = what.third ? what.num_slots - 1 : what.num_slots;
-  if (in_order > 0) instruction.a = slot_of(what.slots[0]);
-  if (in_order > 1) instruction.b = slot_of(what.slots[1]);
-  if (in_order > 2) instruction.c = slot_of(what.slots[2]);
-  if (what.third) instruction.c = slot_of(what.slots[in_order]);
+  std::uint32_t* const slots[] = {&instruction.a, &instruction.b, &instruction.c, &instruction.d};
+  for (std::size_t k = 0; k < what.slots.size(); ++k) {
+    if (what.slots[k] != kNoNode) *slots[k] = slot_of(what.slots[k]);
+  }
   // Lanes are read before they are written, so a result may take the slot of an operand that ends here.
-  for (int k = 0; k < what.num_slots; ++k) release(what.slots[k]);
+  for (const NodeId operand : what.slots) {
+    if (operand != kNoNode) release(operand);
+  }
   instruction.dst = slot_[id] = acquire();
   tape_.instructions.push_back(instruction);
 }

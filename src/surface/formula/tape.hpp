@@ -51,22 +51,26 @@ enum class Code : std::uint8_t {
   choose,
   keep,
   drop,
-  fused,  // first of the kNumFused codes of two operations in one, see fused_code
+  fused,  // first of the kNumFused codes of several operations in one, see fused_code
 };
 
 /// Two operations in one instruction save a store, a load and a decoding. Each still rounds by itself, so the result
 /// has the bits of the two instructions. t = first operation on a (and b, or `value`), then the second with c or
-/// `value2`.
+/// `value2`. A scaled one goes on with t * d * `value3`: so end the entries of a Hessian, times the weight.
 enum class FirstOp : std::uint8_t { multiply, multiply_c, square, add, add_c, subtract };
 enum class SecondOp : std::uint8_t { add, add_c, multiply, multiply_c, minus, from, from_c, square };
 inline constexpr int kNumFirst = 6;
 inline constexpr int kNumSecond = 8;
-inline constexpr int kNumFused = kNumFirst * kNumSecond;
+inline constexpr int kNumPairs = kNumFirst * kNumSecond;
+inline constexpr int kNumFused = 2 * kNumPairs;  // the scaled ones last
+inline constexpr int kNumCodes = static_cast<int>(Code::fused) + kNumFused;
+static_assert(kNumCodes <= 256);
 
 [[nodiscard]] constexpr Code fused_code(FirstOp first, SecondOp second) {
   return static_cast<Code>(static_cast<int>(Code::fused) + static_cast<int>(first) * kNumSecond +
                            static_cast<int>(second));
 }
+[[nodiscard]] constexpr Code scaled_code(Code fused) { return static_cast<Code>(static_cast<int>(fused) + kNumPairs); }
 
 struct Instruction {
   Code code = Code::constant;
@@ -74,8 +78,10 @@ struct Instruction {
   std::uint32_t a = 0;
   std::uint32_t b = 0;
   std::uint32_t c = 0;
+  std::uint32_t d = 0;
   double value = 0;
   double value2 = 0;
+  double value3 = 0;
 };
 
 /// A straight-line program: read inputs, compute in slots, write outputs. Immutable; what runs it brings the slots.
@@ -105,7 +111,7 @@ struct Output {
 
 /// Compiles what `outputs` need: dead parts are left out, a slot is reused as soon as its value is no longer needed.
 /// output_sizes[i] is the number of entries of output array i; of an array with at most kMaxOutputRow entries,
-/// `outputs` names all or none. `fuse`: use instructions of two operations (the kernel for boxes has none).
+/// `outputs` names all or none. `fuse`: use instructions of several operations (the kernel for boxes has none).
 [[nodiscard]] Tape compile(const Graph& graph, const std::vector<InputArray>& inputs,
                            const std::vector<std::uint32_t>& output_sizes, const std::vector<Output>& outputs,
                            bool fuse = true);
