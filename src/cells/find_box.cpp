@@ -119,6 +119,11 @@ Box shrink(const Surface& surface, Box box, const Context& context) {
   }
 }
 
+/// No surface is looked for beyond it.
+double reach_about(const PointsIn& near) {
+  return near.cols() > 0 ? std::max(kReach, 4 * near.lpNorm<Eigen::Infinity>()) : kReach;
+}
+
 /// The box around points of interest on an axis where the surface does not end.
 Box around(const PointsIn& near, Index d) {
   if (near.cols() == 0) return cube(Vector::Zero(d), kDefaultHalfWidth);
@@ -135,27 +140,32 @@ Box around(const PointsIn& near, Index d) {
       " no solution " + (surface.domain() != nullptr ? "inside the domain " : "") + where);
 }
 
-Box by_bounds(const Surface& surface, const PointsIn& near, const Context& context) {
+SurfaceExtent all_in(const Box& box) {
+  return {.box = box,
+          .window = box,
+          .whole = box,
+          .endless = Eigen::Array<bool, Eigen::Dynamic, 1>::Constant(box.dim(), false)};
+}
+
+SurfaceExtent by_bounds(const Surface& surface, const PointsIn& near, const Context& context) {
   const Index d = surface.dim();
   detail::check_halving(d);
-  double reach = kReach;
-  if (near.cols() > 0) reach = std::max(reach, 4 * near.lpNorm<Eigen::Infinity>());
+  const double reach = reach_about(near);
   const Box everywhere = cube(Vector::Zero(d), reach);
-  const Box found = shrink(surface, everywhere, context);
-  if (found.dim() == 0) throw_empty(surface, "within +-" + detail::describe(reach) + " (proved by interval bounds)");
-  Eigen::Array<bool, Eigen::Dynamic, 1> endless = found.lower.array() <= -reach || found.upper.array() >= reach;
-  if (!endless.any()) return found;
+  SurfaceExtent extent = all_in(everywhere);
+  extent.whole = shrink(surface, everywhere, context);
+  if (extent.whole.dim() == 0)
+    throw_empty(surface, "within +-" + detail::describe(reach) + " (proved by interval bounds)");
+  extent.endless = extent.whole.lower.array() <= -reach || extent.whole.upper.array() >= reach;
+  extent.box = extent.whole;
+  if (!extent.endless.any()) return extent;
 
   Box window = around(near, d);
   for (;;) {
-    Box box = found;
-    for (Index a = 0; a < d; ++a) {
-      if (!endless(a)) continue;
-      box.lower(a) = window.lower(a);
-      box.upper(a) = window.upper(a);
-    }
-    const Box shrunk = shrink(surface, box, context);
-    if (shrunk.dim() != 0) return shrunk;
+    extent.window = {extent.endless.select(window.lower.array(), everywhere.lower.array()),
+                     extent.endless.select(window.upper.array(), everywhere.upper.array())};
+    extent.box = shrink(surface, intersection(extent.window, extent.whole), context);
+    if (extent.box.dim() != 0) return extent;
     if (window.upper.maxCoeff() >= reach) throw_empty(surface, "near the points asked about");
     const Vector middle = 0.5 * (window.lower + window.upper);
     const Vector half = window.extent();  // twice as wide
@@ -200,7 +210,7 @@ bool about_the_same(const Box& a, const Box& b) {
          0.15 * size;
 }
 
-Box by_trial(const Surface& surface, const PointsIn& near, const Context& context) {
+SurfaceExtent by_trial(const Surface& surface, const PointsIn& near, const Context& context) {
   const Index d = surface.dim();
   const Vector centre = near.cols() > 0 ? Vector(near.rowwise().mean()) : Vector::Zero(d);
   std::vector<Box> boxes;
@@ -222,27 +232,46 @@ Box by_trial(const Surface& surface, const PointsIn& near, const Context& contex
       for (std::size_t i = n - 3; i < n; ++i) {
         box = {box.lower.cwiseMin(boxes[i].lower), box.upper.cwiseMax(boxes[i].upper)};
       }
-      return with_margin(box, kTrialMargin);
+      return all_in(with_margin(box, kTrialMargin));
     }
   }
   if (!any) throw_empty(surface, "that Newton's iteration finds from anywhere within +-1e6");
-  return around(near, d);
+  SurfaceExtent extent = all_in(around(near, d));
+  extent.whole = cube(Vector::Zero(d), reach_about(near));
+  extent.endless.setConstant(true);
+  return extent;
 }
 
 }  // namespace
 
-Box find_box(const Surface& surface, const PointsIn& near, const Context& context) {
+SurfaceExtent find_extent(const Surface& surface, const PointsIn& near, const Context& context) {
   if (near.rows() != surface.dim()) {
     throw InvalidArgument("the points of interest have " + std::to_string(near.rows()) + " coordinates, the surface " +
                           std::to_string(surface.dim()) + " dimensions");
   }
   if (!near.allFinite()) throw InvalidArgument("a point of interest is not finite");
-  if (surface.box()) return *surface.box();
+  if (surface.box()) return all_in(*surface.box());
   if (surface.samples() != nullptr && surface.samples()->size() > 0) {
-    return with_margin(bounding_box(surface.samples()->points), kSampleMargin);
+    return all_in(with_margin(bounding_box(surface.samples()->points), kSampleMargin));
   }
   const CrossingTest test(surface, Vector::Zero(surface.dim()), 1);
   return test.has_bounds() ? by_bounds(surface, near, context) : by_trial(surface, near, context);
+}
+
+Box find_box(const Surface& surface, const PointsIn& near, const Context& context) {
+  return find_extent(surface, near, context).box;
+}
+
+SurfaceExtent through_window(const Surface& surface, const SurfaceExtent& extent, const Box& window,
+                             const Context& context) {
+  SurfaceExtent seen = extent;
+  seen.window = window;
+  seen.box = intersection(window, extent.whole);
+  if (CrossingTest(surface, Vector::Zero(surface.dim()), 1).has_bounds()) {
+    const Box tight = shrink(surface, seen.box, context);
+    if (tight.dim() != 0) seen.box = tight;
+  }
+  return seen;
 }
 
 }  // namespace taut

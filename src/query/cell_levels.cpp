@@ -9,7 +9,6 @@
 #include "query/cell_size.hpp"
 #include "query/normal_turns.hpp"
 #include "taut/cells/components.hpp"
-#include "taut/cells/find_box.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/surface/projection.hpp"
@@ -38,6 +37,14 @@ std::string text_of(const VectorIn& x) {
   return text;
 }
 
+std::string text_of(const Box& box) {
+  std::string text;
+  for (Index a = 0; a < box.dim(); ++a) {
+    text += fmt::format("{}[{:.4g}, {:.4g}]", a > 0 ? " x " : "", box.lower(a), box.upper(a));
+  }
+  return text;
+}
+
 void check_point(const Surface& surface, const VectorIn& x, const char* name) {
   if (x.size() != surface.dim()) {
     throw InvalidArgument(fmt::format("{} point {}: has {} coordinates, the surface lies in {} dimensions", name,
@@ -61,19 +68,19 @@ bool CellLevels::prepare(const PointsIn& near) {
   const bool again = size_ > 0;
   if (again) {
     bool inside = true;
-    for (Index j = 0; j < near.cols(); ++j) inside = inside && box_.contains(near.col(j));
+    for (Index j = 0; j < near.cols(); ++j) inside = inside && extent_.window.contains(near.col(j));
     if (inside || surface_.box()) return false;
     complete_.clear();
   }
   if (!exist()) {
     if (near.cols() == 0) return again;  // nothing to judge by yet
-    box_ = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
-    size_ = std::max(box_.extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
+    extent_.box = extent_.window = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
+    size_ = std::max(box().extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
     return again;
   }
-  box_ = surface_.box() ? *surface_.box() : find_box(surface_, near, context_);
+  extent_ = find_extent(surface_, near, context_);
   size_ = cell_;
-  if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box_);
+  if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box());
   return again;
 }
 
@@ -81,8 +88,8 @@ bool CellLevels::grows() const { return grid_ == GridMethod::grow || (grid_ == G
 
 std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
   if (grows()) return nullptr;
-  return std::make_shared<SurfaceCells>(surface_, subdivide(surface_, {.size = h, .box = box_, .origin = {}}, context_),
-                                        context_);
+  return std::make_shared<SurfaceCells>(
+      surface_, subdivide(surface_, {.size = h, .box = box(), .origin = {}}, context_), context_);
 }
 
 /// Finds out whether the surface bends too much from one of the coarsest cells to the next for marched distances to

@@ -7,6 +7,7 @@
 
 #include "march/cell_map.hpp"
 #include "query/sharp_bends.hpp"
+#include "taut/cells/find_box.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
@@ -36,7 +37,10 @@ class CellLevels {
   [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
   [[nodiscard]] double size(int level) const;
   /// Where cells are looked for. Empty until prepared.
-  [[nodiscard]] const Box& box() const { return box_; }
+  [[nodiscard]] const Box& box() const { return extent_.box; }
+  [[nodiscard]] const SurfaceExtent& extent() const { return extent_; }
+  /// True when the surface goes on beyond the box, where no cells are.
+  [[nodiscard]] bool endless() const { return exist() && !lazy() && extent_.endless.any(); }
   /// The cells of a level. `seeds` (d x n) are where lazy ones start; those are the caller's alone. Complete ones are
   /// shared by all callers, who must not ask for more than their const interface; they may call from several threads.
   [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds);
@@ -71,7 +75,7 @@ class CellLevels {
   double cell_;
   double size_ = 0;  // h of level 0; 0 until prepared
   bool resolved_ = true;
-  Box box_;
+  SurfaceExtent extent_;
   std::mutex mutex_;
   struct Complete {
     std::shared_ptr<SurfaceCells> cells;
@@ -84,6 +88,8 @@ class CellLevels {
 
 /// "1,0,0.5": a point as the command line takes it.
 [[nodiscard]] std::string text_of(const VectorIn& x);
+/// "[0, 2] x [-1, 1]"
+[[nodiscard]] std::string text_of(const Box& box);
 
 /// Throws InvalidArgument unless x has the surface's dimension and is finite.
 void check_point(const Surface& surface, const VectorIn& x, const char* name);

@@ -22,6 +22,11 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   Points on_surface(sources.rows(), sources.cols());
   for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = levels.on_surface(sources.col(j), "source");
 
+  if (levels.endless()) {
+    context.tell("the surface goes on beyond " + detail::text_of(levels.box()) +
+                 ": distances are along paths that stay in there");
+  }
+
   const std::shared_ptr<SurfaceCells> shared = levels.cells(0, on_surface);
   SurfaceCells& cells = *shared;
   const DistanceField field =

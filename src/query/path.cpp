@@ -70,6 +70,22 @@ constexpr double kCloser = 0.7;
 /// more than that.
 constexpr double kLocal = 0.5;
 constexpr double kMismarched = 0.02;
+/// Of the window that a surface without end is looked at through.
+constexpr int kMostDoublings = 6;
+constexpr Index kMostCellsFarther = 500'000;
+
+constexpr std::string_view kApart = "the two points lie on different components of the surface";
+
+bool proved_apart(const PathResult& result) {
+  return result.status == Status::disconnected && result.message == kApart;
+}
+
+/// The time spent on `earlier` counts for `later`.
+void add_seconds(const PathResult& earlier, PathResult& later) {
+  later.seconds.cells += earlier.seconds.cells;
+  later.seconds.march += earlier.seconds.march;
+  later.seconds.correct += earlier.seconds.correct;
+}
 
 }  // namespace
 
@@ -92,13 +108,27 @@ struct PathSolver::Impl {
   Context context;  // the user's, fit for several threads
   detail::StartFinder finder;
   bool close_up = false;  // of a surface that another solver knows as a whole
+  bool farther = false;   // through a wider window, where another solver has found no way
+  mutable std::mutex widening;
+  mutable std::vector<std::unique_ptr<Impl>> wider;  // through windows 2, 4, 8, ... times as wide
 
+  void prepare(const PointsIn& near) {
+    if (finder.prepare(near)) wider.clear();
+  }
   [[nodiscard]] const detail::CellLevels& levels() const { return finder.levels(); }
+  /// The shortest path. `first`: starts of level 0, when they are there already.
+  [[nodiscard]] PathResult find(const Vector& p, const Vector& q, Corrector& corrector,
+                                std::optional<Starts> first = std::nullopt) const;
+  /// The shortest one in the box.
   [[nodiscard]] PathResult between(const Vector& p, const Vector& q, Corrector& corrector,
-                                   std::optional<Starts> first = std::nullopt) const;
+                                   std::optional<Starts> first) const;
   [[nodiscard]] bool doubted(const PathResult& found, const Starts& starts, int level) const;
   [[nodiscard]] PathResult walk(const PathResult& so_far, const Vector& p, const Vector& q, Corrector& corrector) const;
   [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;
+  [[nodiscard]] Box window(int doublings) const;
+  [[nodiscard]] bool have_room(const PathResult& found, int doublings) const;
+  [[nodiscard]] bool is_affordable(const PathResult& found, int doublings) const;
+  [[nodiscard]] const Impl& through(int doublings) const;
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -114,7 +144,6 @@ PathSolver& PathSolver::operator=(PathSolver&&) noexcept = default;
 
 const Surface& PathSolver::surface() const { return impl_->surface; }
 
-/// `first`: starts of level 0, when they are there already.
 PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector& corrector,
                                      std::optional<Starts> first) const {
   PathResult result;
@@ -159,7 +188,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
   double marched = 0;
   const auto disconnected = [&] {
     result.status = Status::disconnected;
-    result.message = "the two points lie on different components of the surface";
+    result.message = kApart;
     return result;
   };
   for (int level = 0; level < levels().num_levels(); ++level) {
@@ -184,6 +213,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (starts.paths.empty()) {
       if (finder.apart(*starts.cells, level, p, q)) return disconnected();
       const Index finer = starts.cells->num_cells() << (surface.dim() - 1);
+      if (farther && finer > kMostCellsFarther) break;
       if (!walked && finer > kMostCellsBeforeWalks) {
         walked = walk(result, p, q, corrector);
         if (walked->status == Status::ok) return *std::move(walked);
@@ -207,7 +237,7 @@ PathResult PathSolver::Impl::between(const Vector& p, const Vector& q, Corrector
     if (sure || second_try) break;
   }
   if (!best) {
-    if (!walked && levels().exist()) walked = walk(result, p, q, corrector);
+    if (!walked && levels().exist() && !farther) walked = walk(result, p, q, corrector);
     if (walked && walked->points.cols() > 0) return *std::move(walked);
     const bool walks = options.method != CorrectionMethod::grid;
     detail::explain_no_way(result, surface, {barrier, levels().resolved(), walks});
@@ -247,17 +277,89 @@ PathResult PathSolver::Impl::look_closer(PathResult found, Corrector& corrector)
   }
   const Box& whole = levels().box();
   Box near = detail::box_of_shorter_paths(found.from, found.to, found.length);
-  near = {near.lower.cwiseMax(whole.lower), near.upper.cwiseMin(whole.upper)};
+  near = intersection(near, whole);
   if (close_up || near.extent().maxCoeff() > kCloser * whole.extent().maxCoeff()) return found;
   Impl closer(surface.with_box(near), options, context);
   closer.close_up = true;
-  closer.finder.prepare(chord(found.from, found.to));
-  PathResult again = closer.between(found.from, found.to, corrector);
+  closer.prepare(chord(found.from, found.to));
+  PathResult again = closer.between(found.from, found.to, corrector, std::nullopt);
   if (again.status != Status::ok || again.length > (1 + options.tolerance) * found.length) return found;
-  again.seconds.cells += found.seconds.cells;
-  again.seconds.march += found.seconds.march;
-  again.seconds.correct += found.seconds.correct;
+  add_seconds(found, again);
   return again;
+}
+
+/// The first one, made wider where the surface has no end.
+Box PathSolver::Impl::window(int doublings) const {
+  const Box& first = levels().extent().window;
+  const Vector middle = (first.lower + first.upper) / 2;
+  const Vector half = levels().extent().endless.select((std::ldexp(0.5, doublings) * first.extent()).array(),
+                                                       0.5 * first.extent().array());
+  return {middle - half, middle + half};
+}
+
+/// Does that window hold all paths that are shorter.
+bool PathSolver::Impl::have_room(const PathResult& found, int doublings) const {
+  const Box seen = window(doublings);
+  const Box shorter = detail::box_of_shorter_paths(found.from, found.to, found.length);
+  return (!levels().extent().endless ||
+          (shorter.lower.array() >= seen.lower.array() && shorter.upper.array() <= seen.upper.array()))
+      .all();
+}
+
+/// A solver that looks through that window.
+const PathSolver::Impl& PathSolver::Impl::through(int doublings) const {
+  const std::lock_guard lock(widening);
+  const auto at = static_cast<std::size_t>(doublings) - 1;
+  if (wider.size() <= at) wider.resize(at + 1);
+  if (!wider[at]) {
+    const SurfaceExtent seen = through_window(surface, levels().extent(), window(doublings), context);
+    wider[at] = std::make_unique<Impl>(surface.with_box(seen.box), options, context);
+    wider[at]->farther = true;
+    wider[at]->prepare(Points(surface.dim(), 0));
+  }
+  return *wider[at];
+}
+
+/// Where the surface goes on beyond the box, shorter ways may, too, or the only one: those are sought through windows
+/// wide enough.
+PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& corrector,
+                                  std::optional<Starts> first) const {
+  PathResult found = between(p, q, corrector, std::move(first));
+  Box seen = levels().box();
+  for (int doublings = 0; levels().endless();) {
+    const bool way = found.status == Status::ok;
+    if (way ? have_room(found, doublings) : !proved_apart(found)) break;
+    const int before = doublings++;
+    while (way && doublings < kMostDoublings && !have_room(found, doublings)) ++doublings;
+    if (doublings <= kMostDoublings && is_affordable(found, doublings - before)) {
+      try {
+        const Impl& farther_out = through(doublings);
+        PathResult again = farther_out.between(p, q, corrector, std::nullopt);
+        const bool ahead = way ? again.status == Status::ok && again.length <= (1 + options.tolerance) * found.length
+                               : again.status == Status::ok || proved_apart(again);
+        add_seconds(found, again);
+        if (ahead) {
+          found = std::move(again);
+          seen = farther_out.levels().box();
+          continue;
+        }
+        found.seconds = again.seconds;
+      } catch (const OutOfMemory&) {  // what was found is not lost
+      }
+    }
+    found.rivals_sought = false;
+    found.message = way ? fmt::format("a shorter path may exist: the surface goes on beyond {}", detail::text_of(seen))
+                        : fmt::format("{} within {}, beyond which it goes on", kApart, detail::text_of(seen));
+    break;
+  }
+  return found;
+}
+
+/// Cells of a given size get ever more.
+bool PathSolver::Impl::is_affordable(const PathResult& found, int doublings) const {
+  if (options.cell == 0) return true;
+  const Index most = found.status == Status::ok ? kMostCellsForSheets : kMostCellsFarther;
+  return found.num_cells <= most >> (doublings * (surface.dim() - surface.codim()));
 }
 
 /// For ends that no cells have joined: thin shells, of which a cell holds both sides. Without a curve where walks find
@@ -324,17 +426,17 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   detail::check_point(impl.surface, p, "start");
   detail::check_point(impl.surface, q, "end");
   const detail::Stopwatch watch;
-  impl.finder.prepare(chord(p, q));
+  impl.prepare(chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
-  PathResult result = impl.between(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+  PathResult result = impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
   result.seconds.cells += box_seconds;
   return result;
 }
 
 void PathSolver::expect(const PointsIn& near, Index num_pairs) {
   Impl& impl = *impl_;
-  impl.finder.prepare(finite_columns(near, impl.surface.dim()));
+  impl.prepare(finite_columns(near, impl.surface.dim()));
   impl.finder.tabulate(num_pairs);
 }
 
@@ -350,8 +452,8 @@ std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const Poin
   return impl.for_all(from.cols(), true, [&](Index j, Impl::Corrector& corrector) {
     detail::check_point(impl.surface, from.col(j), "start");
     detail::check_point(impl.surface, to.col(j), "end");
-    return impl.between(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
-                        corrector);
+    return impl.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
+                     corrector);
   });
 }
 
@@ -360,7 +462,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   detail::check_point(impl.surface, p, "start");
   Points all(p.size(), 1 + (targets.rows() == p.size() ? targets.cols() : 0));
   all << p, targets.leftCols(all.cols() - 1);
-  impl.finder.prepare(finite_columns(all, impl.surface.dim()));
+  impl.prepare(finite_columns(all, impl.surface.dim()));
   const Vector from = impl.levels().on_surface(p, "start");
   const auto target = [&](Index j) {
     detail::check_point(impl.surface, targets.col(j), "end");
@@ -368,7 +470,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   };
   if (!impl.levels().exist()) {
     return impl.for_all(targets.cols(), true,
-                        [&](Index j, Impl::Corrector& corrector) { return impl.between(from, target(j), corrector); });
+                        [&](Index j, Impl::Corrector& corrector) { return impl.find(from, target(j), corrector); });
   }
   PathSeconds shared;
   detail::Stopwatch watch;
@@ -380,7 +482,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   std::vector<PathResult> results =
       impl.for_all(targets.cols(), !cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
         const Vector to = target(j);
-        return impl.between(from, to, corrector, impl.finder.continue_to(cells, field, to));
+        return impl.find(from, to, corrector, impl.finder.continue_to(cells, field, to));
       });
   if (!results.empty()) {
     results.front().seconds.cells += shared.cells;

@@ -39,9 +39,11 @@ class StartFinder {
 
   StartFinder(const Surface& surface, const PathOptions& options, const Context& context);
 
-  /// Makes sure that the points near (d x n) lie where cells are looked for.
-  void prepare(const PointsIn& near) {
-    if (levels_.prepare(near)) table_.reset();
+  /// Makes sure that the points near (d x n) lie where cells are looked for. True when that makes earlier cells void.
+  bool prepare(const PointsIn& near) {
+    const bool anew = levels_.prepare(near);
+    if (anew) table_.reset();
+    return anew;
   }
   /// Makes the cells of level 0, and a table of distances where that pays for `num_pairs` pairs.
   void tabulate(Index num_pairs);

@@ -55,6 +55,27 @@ TEST(FindBox, BoxesTheNeighbourhoodOfThePointsWhereTheSurfaceGoesOn) {
   EXPECT_GE(find_box(plane, Points(3, 0)).diagonal(), 5);
 }
 
+TEST(FindBox, SaysWhereTheSurfaceGoesOnAndLooksFarther) {
+  const Surface cylinder =
+      test::generic_surface(3, 1, [](const auto& x, auto& y) { y[0] = test::square(x[0]) + test::square(x[1]) - 1.0; });
+  const SurfaceExtent extent = find_extent(cylinder, Eigen::Vector3d(1, 0, 2));
+  EXPECT_FALSE(extent.endless(0));
+  EXPECT_FALSE(extent.endless(1));
+  EXPECT_TRUE(extent.endless(2));
+  EXPECT_LE(extent.whole.upper(0), 1e6);
+  EXPECT_GE(extent.whole.upper(2), 1e7);
+  EXPECT_LE(extent.box.upper(2), 5);
+  Box window = extent.window;
+  window.upper(2) = 40;
+  const SurfaceExtent farther = through_window(cylinder, extent, window);
+  EXPECT_GE(farther.box.upper(2), 40 - 1e-9);
+  EXPECT_LE(farther.box.upper(0), 1.5);
+
+  const Surface sphere = test::generic_surface(
+      3, 1, [](const auto& x, auto& y) { y[0] = test::square(x[0]) + test::square(x[1]) + test::square(x[2]) - 1.0; });
+  EXPECT_FALSE(find_extent(sphere, Points(3, 0)).endless.any());
+}
+
 TEST(FindBox, LooksAtTheDomainToo) {
   SurfaceExtras extras;
   extras.domain = test::generic_function(2, 1, [](const auto& x, auto& y) { y[0] = 4.0 - test::square(x[1]); });

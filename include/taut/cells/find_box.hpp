@@ -7,6 +7,18 @@
 
 namespace taut {
 
+/// Where a surface is.
+struct SurfaceExtent {
+  /// Holds what there is of it in `window`, tightly.
+  Box box;
+  /// Where it was looked for: everywhere but on endless axes.
+  Box window;
+  /// Holds all of it, as far as numbers go on endless axes.
+  Box whole;
+  /// By axis: does the surface go on beyond the window.
+  Eigen::Array<bool, Eigen::Dynamic, 1> endless;
+};
+
 /// Where to look for a surface: its own box where it has one; else, in this order,
 ///  - a surface with samples: their box and 5 % of its diagonal around it;
 ///  - F with interval bounds: a box that holds the whole surface, proved within +-2^24 (16.8 million model units, more
@@ -19,6 +31,13 @@ namespace taut {
 /// `near`: points of interest, d x n, model units, may be d x 0. Throws EmptySurface when there is nothing,
 /// InvalidArgument for a wrong dimension, non-finite points, or more than 12 dimensions to go
 /// through by bounds.
+[[nodiscard]] SurfaceExtent find_extent(const Surface& surface, const PointsIn& near, const Context& context = {});
+
+/// find_extent(...).box.
 [[nodiscard]] Box find_box(const Surface& surface, const PointsIn& near, const Context& context = {});
+
+/// The same surface through another window, which meets it.
+[[nodiscard]] SurfaceExtent through_window(const Surface& surface, const SurfaceExtent& extent, const Box& window,
+                                           const Context& context = {});
 
 }  // namespace taut

@@ -18,4 +18,9 @@ struct Box {
   }
 };
 
+/// What two boxes that meet have in common.
+[[nodiscard]] inline Box intersection(const Box& a, const Box& b) {
+  return {a.lower.cwiseMax(b.lower), a.upper.cwiseMin(b.upper)};
+}
+
 }  // namespace taut

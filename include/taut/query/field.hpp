@@ -24,8 +24,9 @@ struct FieldResult {
   Index num_cells = 0;
 };
 
-/// Marches from the nearest of `sources` (d x s, projected onto the surface) over all cells; d at most 6. Throws
-/// as PathSolver::solve.
+/// Marches from the nearest of `sources` (d x s, projected onto the surface) over all cells; d at most 6. Of a surface
+/// without end, cells are made in a box around the sources (find_extent); only paths in it count then, which is told.
+/// Throws as PathSolver::solve.
 [[nodiscard]] FieldResult marched_field(const Surface& surface, const PointsIn& sources,
                                         const FieldOptions& options = {}, const Context& context = {});
 
