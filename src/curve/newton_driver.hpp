@@ -479,8 +479,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     } else if (soft_error() > std::max(options_.tolerance, kSoftRounding) * result.length) {
       result.reason = "curves beside this one are as long to more digits than can be told (ends nearly conjugate)";
     } else if (check_.length_error > options_.tolerance * result.length) {
-      result.reason = nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
-                                 : "the tolerance was not met with the elements allowed";
+      result.reason = rounding() > options_.tolerance * result.length
+                          ? "the rounding of coordinates this large forbids the tolerance"
+                      : nonsmooth_ ? "the surface is not smooth enough here (a crease?) for the tolerance"
+                                   : "the tolerance was not met with the elements allowed";
     } else if (check_.corner > CurveChecker<Frame>::kCorner) {
       result.reason = "the curve has a corner: it crosses a crease of the surface";
     } else if (bends_within_surface()) {

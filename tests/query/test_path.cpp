@@ -187,6 +187,18 @@ TEST(ShortestPath, VeryNearPointsAreAChordApart) {
   EXPECT_NEAR(path.length, 1e-9, 1e-15);
 }
 
+TEST(ShortestPath, FarFromTheOriginRoundingIsBlamedNotTheSurface) {
+  const Surface far = parse_surface("(x-1e8)^2+y^2+z^2=1");
+  const PathResult path = shortest_path(far, Eigen::Vector3d(1e8 + 1, 0, 0), Eigen::Vector3d(1e8, 0, 1));
+  EXPECT_EQ(path.status, Status::not_converged);
+  EXPECT_NE(path.message.find("rounding"), std::string::npos) << path.message;
+  EXPECT_LE(std::abs(path.length - std::numbers::pi / 2), path.length_error);
+  // Of three digits there is no doubt.
+  const PathResult rough =
+      shortest_path(far, Eigen::Vector3d(1e8 + 1, 0, 0), Eigen::Vector3d(1e8, 0, 1), {.tolerance = 1e-3});
+  EXPECT_EQ(rough.status, Status::ok) << rough.message;
+}
+
 TEST(ShortestPath, DifferentComponentsAreDisconnected) {
   const Surface two = parse_surface("(x^2+y^2+z^2-1)*((x-4)^2+y^2+z^2-1)=0");
   const PathResult path = shortest_path(two, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(3, 0, 0));
