@@ -6,6 +6,13 @@
 
 namespace taut::detail {
 
+/// Straight from p to q (d each), d x 2.
+[[nodiscard]] inline Points chord(const VectorIn& p, const VectorIn& q) {
+  Points ends(p.size(), 2);
+  ends << p, q;
+  return ends;
+}
+
 /// Length of the polyline with these nodes (d x m).
 [[nodiscard]] double polyline_length(const PointsIn& nodes);
 

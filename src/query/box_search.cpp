@@ -6,17 +6,12 @@
 #include <memory>
 #include <utility>
 
+#include "curve/polyline.hpp"
 #include "query/no_way.hpp"
 #include "query/shorter_paths.hpp"
 
 namespace taut::detail {
 namespace {
-
-Points chord(const VectorIn& p, const VectorIn& q) {
-  Points x(p.size(), 2);
-  x << p, q;
-  return x;
-}
 
 /// Before cells get finer than so many, ways are sought without them; beyond so many, no longer with them.
 constexpr Index kMostCellsBeforeWalks = 2'000'000;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "curve/polyline.hpp"
 #include "query/check_options.hpp"
 #include "query/corrector.hpp"
 #include "query/path_search.hpp"
@@ -16,12 +17,6 @@
 
 namespace taut {
 namespace {
-
-Points chord(const VectorIn& p, const VectorIn& q) {
-  Points x(p.size(), 2);
-  x << p, q;
-  return x;
-}
 
 /// The columns of x (d each) without a NaN or infinity.
 Points finite_columns(const PointsIn& x, Index dim) {
@@ -132,7 +127,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   detail::check_point(impl.surface, p, "start");
   detail::check_point(impl.surface, q, "end");
   const detail::Stopwatch watch;
-  impl.search.prepare(chord(p, q));
+  impl.search.prepare(detail::chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
   PathResult result =

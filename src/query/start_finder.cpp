@@ -55,12 +55,6 @@ constexpr double kWorthwhile = 0.2;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Points ends(const Vector& p, const Vector& q) {
-  Points x(p.size(), 2);
-  x << p, q;
-  return x;
-}
-
 /// Do p and q lie in cells with different labels.
 bool in_two(SurfaceCells& cells, const std::vector<std::int32_t>& label, const Vector& p, const Vector& q) {
   const Index i = cells.cell_at(p);
@@ -174,7 +168,7 @@ Starts StartFinder::walk(const Vector& p, const Vector& q) const {
 Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
   const Stopwatch watch;
-  const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, ends(p, q));
+  const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, chord(p, q));
   const Ground ground{cells, levels_.map(level), levels_.sharp_bends(level)};
   const double cells_seconds = watch.seconds();
   // No rival is longer than this, by the table.
@@ -235,7 +229,7 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   const bool arrives = std::isfinite(distance);
   const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell);
   starts.rivals_sought = arrives && seeks_rivals();
-  const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(ends(p, q));
+  const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(chord(p, q));
   if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
   if (rivals) {
     StartPathOptions options{.excess = kExcess, .max_paths = kMostRivals};
@@ -281,7 +275,7 @@ bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const V
 
 bool StartFinder::known_to_be_apart(int level, const Vector& p, const Vector& q) const {
   const std::shared_ptr<const std::vector<std::int32_t>> labels = levels_.known_components(level);
-  return labels && in_two(*levels_.cells(level, ends(p, q)), *labels, p, q);
+  return labels && in_two(*levels_.cells(level, chord(p, q)), *labels, p, q);
 }
 
 }  // namespace taut::detail
