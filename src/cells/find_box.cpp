@@ -154,8 +154,9 @@ SurfaceExtent by_bounds(const Surface& surface, const PointsIn& near, const Cont
   const Box everywhere = cube(Vector::Zero(d), reach);
   SurfaceExtent extent = all_in(everywhere);
   extent.whole = shrink(surface, everywhere, context);
-  if (extent.whole.dim() == 0)
+  if (extent.whole.dim() == 0) {
     throw_empty(surface, "within +-" + detail::describe(reach) + " (proved by interval bounds)");
+  }
   extent.endless = extent.whole.lower.array() <= -reach || extent.whole.upper.array() >= reach;
   extent.box = extent.whole;
   if (!extent.endless.any()) return extent;

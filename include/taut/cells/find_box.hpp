@@ -36,7 +36,8 @@ struct SurfaceExtent {
 /// find_extent(...).box.
 [[nodiscard]] Box find_box(const Surface& surface, const PointsIn& near, const Context& context = {});
 
-/// The same surface through another window, which meets it.
+/// The same surface through another window, which meets it: with the tight box in there by
+/// bounds, without bounds with the window itself.
 [[nodiscard]] SurfaceExtent through_window(const Surface& surface, const SurfaceExtent& extent, const Box& window,
                                            const Context& context = {});
 
