@@ -7,8 +7,8 @@
 
 #include "curve/conjugate_point.hpp"
 #include "curve/element_chain.hpp"
+#include "curve/householder_frame.hpp"
 #include "curve/nodal_curve.hpp"
-#include "curve/tangent_frame.hpp"
 #include "taut/surface/implicit_function.hpp"
 
 namespace taut::detail {
@@ -18,7 +18,7 @@ namespace taut::detail {
 template <int D, int K>
 class DirectSystem {
  public:
-  using Frame = TangentFrame<D, K>;
+  using Frame = HouseholderFrame<D, K>;
   using Curve = NodalCurve<D, K>;
   using Nodes = typename Curve::Nodes;
   static constexpr int Q = Frame::Q;

@@ -6,8 +6,8 @@
 
 namespace taut::detail {
 
-/// What TangentFrame does, without tangents: an orthonormal basis N (d x k) of the row space of a Jacobian J^T = N R.
-/// O(d k^2) a point where the tangents would take O(d^2).
+/// What HouseholderFrame does, without tangents: an orthonormal basis N (d x k) of the row space of a Jacobian J^T = N
+/// R. O(d k^2) a point where the tangents would take O(d^2).
 class NormalFrame {
  public:
   static constexpr int kD = Eigen::Dynamic;

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "march/edge.hpp"
-#include "march/tangent_frame.hpp"
+#include "march/tangent_coordinates.hpp"
 
 namespace taut::detail {
 
 /// A neighbour y of x whose distance is known, unrolled into the tangent space at x (geodesic normal coordinates). All
 /// vectors are in the frame of x, so their first k entries are zero.
 template <int D, class Scalar = double>
-struct Neighbour {
+struct UnrolledNeighbour {
   SmallVector<D, Scalar> position;  ///< z: where y lies; x is at 0
   SmallVector<D, Scalar> gradient;  ///< g: the unit gradient of the distance at y, carried to x along the edge
   Scalar distance;                  ///< u at y
@@ -52,21 +52,21 @@ inline constexpr double kMinBranchCosine = 0.5;
 
 /// The neighbour with the least estimate.
 template <int D, class Scalar>
-const Neighbour<D, Scalar>& best_of(const std::vector<Neighbour<D, Scalar>>& neighbours) {
+const UnrolledNeighbour<D, Scalar>& best_of(const std::vector<UnrolledNeighbour<D, Scalar>>& neighbours) {
   return *std::min_element(neighbours.begin(), neighbours.end(),
                            [](const auto& a, const auto& b) { return a.estimate < b.estimate; });
 }
 
 /// From a single neighbour: the best one's ray, where it passes close to x, else the shortest way over an edge.
 template <int D, class Scalar>
-Arrival<D, Scalar> arrival_from_one(const std::vector<Neighbour<D, Scalar>>& neighbours, Index surface_dim) {
-  const Neighbour<D, Scalar>& first = best_of(neighbours);
+Arrival<D, Scalar> arrival_from_one(const std::vector<UnrolledNeighbour<D, Scalar>>& neighbours, Index surface_dim) {
+  const UnrolledNeighbour<D, Scalar>& first = best_of(neighbours);
   constexpr Scalar kNearRay = 0.9;  // cosine
   if (surface_dim > 1 && first.along > kNearRay * first.length) {
     const SmallVector<D, Scalar> ray = first.distance * first.gradient - first.position;
     return {first.estimate, ray / ray.norm(), false, first.source};
   }
-  const Neighbour<D, Scalar>& y =
+  const UnrolledNeighbour<D, Scalar>& y =
       *std::min_element(neighbours.begin(), neighbours.end(),
                         [](const auto& a, const auto& b) { return a.distance + a.length < b.distance + b.length; });
   const SmallVector<D, Scalar> direction = y.length > 0 ? SmallVector<D, Scalar>(-y.position / y.length) : y.gradient;
@@ -76,7 +76,7 @@ Arrival<D, Scalar> arrival_from_one(const std::vector<Neighbour<D, Scalar>>& nei
 /// n = 2. Do the rays through two neighbours, which miss x by signed distances, pass on either side of it and from
 /// behind?
 template <int D, class Scalar>
-bool surrounds(const Neighbour<D, Scalar>& left, Scalar miss_left, const Neighbour<D, Scalar>& right,
+bool surrounds(const UnrolledNeighbour<D, Scalar>& left, Scalar miss_left, const UnrolledNeighbour<D, Scalar>& right,
                Scalar miss_right) {
   const Scalar t = miss_left / (miss_left - miss_right);
   return miss_left > miss_right && left.along + t * (right.along - left.along) > 0;
@@ -84,8 +84,8 @@ bool surrounds(const Neighbour<D, Scalar>& left, Scalar miss_left, const Neighbo
 
 /// n = 2. Fermat's principle on the segment z(t) between two neighbours: the least sqrt(2 v(t)) + |z(t)|.
 template <int D, class Scalar>
-Arrival<D, Scalar> arrival_between(const Neighbour<D, Scalar>& left, Scalar miss_left,
-                                   const Neighbour<D, Scalar>& right, Scalar miss_right) {
+Arrival<D, Scalar> arrival_between(const UnrolledNeighbour<D, Scalar>& left, Scalar miss_left,
+                                   const UnrolledNeighbour<D, Scalar>& right, Scalar miss_right) {
   using Vec = SmallVector<D, Scalar>;
   constexpr Scalar kHalf = 0.5;
   const Vec edge = right.position - left.position;
@@ -168,7 +168,7 @@ class ArrivalSolver {
   [[nodiscard]] Index codim() const { return K == Eigen::Dynamic ? k_ : K; }
   [[nodiscard]] Index surface_dim() const { return d_ - codim(); }
 
-  bool unroll(const Candidate& y, Neighbour<D>& neighbour) const;
+  bool unroll(const Candidate& y, UnrolledNeighbour<D>& neighbour) const;
   void unroll_all();
   /// From the frame of x to R^d.
   [[nodiscard]] Arrival<D> lift(Arrival<D> arrival) const {
@@ -184,14 +184,14 @@ class ArrivalSolver {
   Index d_;
   Index k_;
   SurfacePoint x_{};
-  TangentFrame<D, K> frame_;
+  TangentCoordinates<D, K> frame_;
   std::vector<Candidate> candidates_;
-  std::vector<Neighbour<D>> neighbours_;
+  std::vector<UnrolledNeighbour<D>> neighbours_;
 };
 
 /// False when no edge joins y to x.
 template <int D, int K>
-bool ArrivalSolver<D, K>::unroll(const Candidate& y, Neighbour<D>& neighbour) const {
+bool ArrivalSolver<D, K>::unroll(const Candidate& y, UnrolledNeighbour<D>& neighbour) const {
   Edge<D> edge;
   if (!make_edge<D, K>(y.point, x_, d_, k_, edge)) return false;
   const Map g(y.gradient, d_);
@@ -214,7 +214,7 @@ bool ArrivalSolver<D, K>::unroll(const Candidate& y, Neighbour<D>& neighbour) co
 template <int D, int K>
 void ArrivalSolver<D, K>::unroll_all() {
   neighbours_.clear();
-  Neighbour<D> neighbour;
+  UnrolledNeighbour<D> neighbour;
   for (const Candidate& y : candidates_) {
     if (unroll(y, neighbour)) neighbours_.push_back(neighbour);
   }
@@ -254,7 +254,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve() {
 template <int D, int K>
 std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
   const Index k = codim();
-  Neighbour<D> first;
+  UnrolledNeighbour<D> first;
   while (!candidates_.empty()) {
     const std::size_t best = best_candidate();
     if (!unroll(candidates_[best], first)) {
@@ -281,7 +281,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
         chosen[side] = c;
       }
     }
-    Neighbour<D> pair[2];
+    UnrolledNeighbour<D> pair[2];
     std::size_t unusable = kNone;
     for (int side = 0; side < 2; ++side) {
       if (chosen[side] == best) {
@@ -295,7 +295,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       continue;
     }
     if (chosen[0] != kNone && chosen[1] != kNone) {
-      const auto miss = [&](const Neighbour<D>& y) {
+      const auto miss = [&](const UnrolledNeighbour<D>& y) {
         return y.gradient(k + 1) * y.position(k) - y.gradient(k) * y.position(k + 1);
       };
       const double miss_left = miss(pair[0]);
@@ -318,12 +318,12 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
 template <int D, int K>
 Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   const Index n = surface_dim();
-  const Neighbour<D>& first = best_of(neighbours_);
+  const UnrolledNeighbour<D>& first = best_of(neighbours_);
   Vec gradient = first.distance * first.gradient - first.position;  // G; its length is the distance
   const double start = gradient.norm();
   if (!(start > 0)) return one_sided();
   const Vec ray = gradient / start;
-  const auto weight = [&](const Neighbour<D>& y) {
+  const auto weight = [&](const UnrolledNeighbour<D>& y) {
     const double behind = -y.position.dot(ray);
     if (!(behind > 0) || y.gradient.dot(first.gradient) < kMinBranchCosine) return 0.0;
     return behind * behind / (y.length * y.length * y.length * y.length);
@@ -333,7 +333,7 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   double sum = 0;
   double spread = 0;
   Vec side = Vec::Zero(d_);
-  for (const Neighbour<D>& y : neighbours_) {
+  for (const UnrolledNeighbour<D>& y : neighbours_) {
     const double w = weight(y);
     if (!(w > 0)) continue;
     const Vec across = y.position - y.position.dot(ray) * ray;
@@ -356,7 +356,7 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
     Matrix normal = ridge * Matrix::Identity(n, n);
     Coordinates right = Coordinates::Zero(n);
     const double v = 0.5 * gradient.squaredNorm();
-    for (const Neighbour<D>& y : neighbours_) {
+    for (const UnrolledNeighbour<D>& y : neighbours_) {
       const double w = weight(y);
       if (!(w > 0)) continue;
       const double residual =

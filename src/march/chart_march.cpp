@@ -115,7 +115,7 @@ void ChartMarch::gather(const ChartLinks& links) {
 }
 
 /// All but its estimate and its length.
-Neighbour<2, float> ChartMarch::neighbour(const ChartLinks& links, std::size_t j) const {
+UnrolledNeighbour<2, float> ChartMarch::neighbour(const ChartLinks& links, std::size_t j) const {
   const Eigen::Vector2f position(links.position[0][j], links.position[1][j]);
   return {position, {gradient_x_[j], gradient_y_[j]}, distance_[j], 0, along_[j], 0, 0};
 }
@@ -150,7 +150,7 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
   if (least[0].value() < kInfinity && least[1].value() < kInfinity) {
     const std::size_t left = least[0].index();
     const std::size_t right = least[1].index();
-    const Neighbour<2, float> pair[2] = {neighbour(links, left), neighbour(links, right)};
+    const UnrolledNeighbour<2, float> pair[2] = {neighbour(links, left), neighbour(links, right)};
     if (surrounds(pair[0], miss_[left], pair[1], miss_[right])) {
       return arrival_between(pair[0], miss_[left], pair[1], miss_[right]);
     }
@@ -158,7 +158,7 @@ std::optional<Arrival<2, float>> ChartMarch::solve(const ChartLinks& links) {
   one_by_one_.clear();
   for (std::size_t j = 0; j < links.count; ++j) {
     if (!(distance_[j] < kInfinity)) continue;
-    Neighbour<2, float>& y = one_by_one_.emplace_back(neighbour(links, j));
+    UnrolledNeighbour<2, float>& y = one_by_one_.emplace_back(neighbour(links, j));
     y.length = y.position.norm();
     y.estimate = std::sqrt(circular_estimate2(y.distance, y.along, y.length * y.length));
   }

@@ -52,7 +52,7 @@ class ChartMarch {
   void visit(Index i);
   void offer_direct(Index j);
   void gather(const ChartLinks& links);
-  [[nodiscard]] Neighbour<2, float> neighbour(const ChartLinks& links, std::size_t j) const;
+  [[nodiscard]] UnrolledNeighbour<2, float> neighbour(const ChartLinks& links, std::size_t j) const;
   [[nodiscard]] std::optional<Arrival<2, float>> solve(const ChartLinks& links);
   void settle(Index i, const Arrival<2, float>& arrival, const ChartLinks& links);
   void watch(Index i, float distance);
@@ -71,7 +71,7 @@ class ChartMarch {
   std::vector<float> along_;    // how far the cell lies ahead of the neighbour
   std::vector<float> miss_;     // by how much the ray through the neighbour misses the cell, signed
   Least nearest_;               // the least square of an estimate of the cell's distance
-  std::vector<Neighbour<2, float>> one_by_one_;
+  std::vector<UnrolledNeighbour<2, float>> one_by_one_;
 };
 
 /// The field of a task with one source and no radius.

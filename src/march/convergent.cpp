@@ -158,7 +158,7 @@ class ConvergentMarch {
   GrowingField field_;
   TargetWatch<D, K> target_;
   ArrivalSolver<D, K> solver_;
-  TangentFrame<D, K> frame_;
+  TangentCoordinates<D, K> frame_;
   std::optional<NeighbourIndex<D>> own_neighbours_;  // of cells that may grow, or whose index nobody has
   const NeighbourIndex<D>* neighbours_;
   std::vector<Index> around_;

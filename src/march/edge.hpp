@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "march/tangent_frame.hpp"
+#include "march/tangent_coordinates.hpp"
 
 namespace taut::detail {
 

@@ -22,7 +22,7 @@ inline constexpr double kDirectCells = 3;
 template <int D, int K>
 std::optional<std::pair<double, SmallVector<D>>> direct_from_source(const DistanceField& field, Index s,
                                                                     const SurfacePoint& x, double radius,
-                                                                    TangentFrame<D, K>& frame) {
+                                                                    TangentCoordinates<D, K>& frame) {
   const Index d = field.sources.rows();
   const Index k = field.source_normals.rows() / d;
   Edge<D> edge;
@@ -145,7 +145,7 @@ class FieldReader {
   Index k_;
   Surroundings<D> surroundings_;
   ArrivalSolver<D, K> solver_;
-  TangentFrame<D, K> frame_;
+  TangentCoordinates<D, K> frame_;
   std::vector<std::int32_t> cell_;
   std::vector<Index> known_;
 };

@@ -8,7 +8,7 @@
 #include "march/march_over.hpp"
 #include "march/methods.hpp"
 #include "march/point_normals.hpp"
-#include "march/tangent_frame.hpp"
+#include "march/tangent_coordinates.hpp"
 #include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "march/tangent_frame.hpp"
+#include "march/tangent_coordinates.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/types.hpp"
 

@@ -7,7 +7,7 @@
 #include "core/parallel.hpp"
 #include "march/dimensions.hpp"
 #include "march/lanes.hpp"
-#include "march/tangent_frame.hpp"
+#include "march/tangent_coordinates.hpp"
 
 namespace taut::detail {
 namespace {
@@ -158,7 +158,7 @@ void SurfaceCharts::fill_records(Index first, Index last) {
   const Index d = cells_.dim();
   const Index k = cells_.codim();
   const double h = cells_.grid().size();
-  TangentFrame<D, K> frame(d, k);
+  TangentCoordinates<D, K> frame(d, k);
   for (Index i = first; i < last; ++i) {
     if (!cells_.valid(i)) continue;
     float* to = record(i);

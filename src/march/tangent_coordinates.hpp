@@ -19,9 +19,9 @@ using SmallVector = Eigen::Matrix<Scalar, D, 1, 0, D == Eigen::Dynamic ? kMaxMar
 /// With the Householder reflections H_1, ..., H_k that carry N to the first k axes, the last d - k rows of H_k ... H_1
 /// are an orthonormal basis of the tangent space: O(d k) a vector, no matrix is formed.
 template <int D, int K>
-class TangentFrame {
+class TangentCoordinates {
  public:
-  TangentFrame(Index d, Index k) : d_(d), k_(k) {}
+  TangentCoordinates(Index d, Index k) : d_(d), k_(k) {}
 
   /// Takes the orthonormal basis N (d x k, column-major).
   void set(const double* normals) {

@@ -9,7 +9,7 @@ namespace taut::detail {
 /// tangents T (d x q, q = d - k, its kernel), by Householder reflections of J^T = N R. Also solves with J.
 /// D and K are the sizes at compile time, or Eigen::Dynamic. Nothing is allocated after `resize`.
 template <int D, int K>
-class TangentFrame {
+class HouseholderFrame {
  public:
   static constexpr int kD = D;
   static constexpr int kK = K;

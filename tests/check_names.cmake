@@ -1,0 +1,20 @@
+cmake_minimum_required(VERSION 3.25)
+# Fails when two headers define a type of the same name: with both in one program that breaks the one-definition rule,
+# which no compiler has to report. Every type of the library lives in taut or taut::detail, so names must differ
+# everywhere; types in a source's unnamed namespace, and those that stand inside another type (indented), are free.
+file(GLOB_RECURSE headers ${ROOT}/include/taut/*.hpp ${ROOT}/src/*.hpp ${ROOT}/apps/*.hpp)
+set(wrong "")
+foreach(header ${headers})
+  file(STRINGS ${header} definitions REGEX "^(class|struct|enum class|union) [A-Z][A-Za-z0-9]*( final)?( : [^;]*)? {")
+  foreach(definition ${definitions})
+    string(REGEX MATCH "^(class|struct|enum class|union) ([A-Z][A-Za-z0-9]*)" ignored "${definition}")
+    set(name ${CMAKE_MATCH_2})
+    if(DEFINED where_${name} AND NOT where_${name} STREQUAL header)
+      string(APPEND wrong "${name}: ${where_${name}} and ${header}\n")
+    endif()
+    set(where_${name} ${header})
+  endforeach()
+endforeach()
+if(wrong)
+  message(FATAL_ERROR "types defined twice:\n${wrong}")
+endif()
