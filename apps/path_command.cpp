@@ -10,6 +10,7 @@
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "checks.hpp"
 #include "commands.hpp"
@@ -43,6 +44,7 @@ struct PathArguments {
   PathOptions options;
   DeliveryArguments delivery;
   bool verify = false;
+  std::vector<const CLI::Option*> of_the_flow;  // without effect on other methods
 };
 
 class Timer {
@@ -223,6 +225,11 @@ ExitCode run(const PathArguments& arguments) {
   const bool pairs = !arguments.pairs.empty();
   const bool in_class = !arguments.start.empty() || !arguments.closed.empty();
   if (in_class) check_class_usage(arguments);
+  for (const CLI::Option* option : arguments.of_the_flow) {
+    if (option->count() > 0 && arguments.options.method != CorrectionMethod::flow) {
+      throw UsageError(fmt::format("{} is for --method flow", option->get_name()));
+    }
+  }
   if (!in_class &&
       (int{one} + int{many} + int{pairs} != 1 || (pairs && !(arguments.from.empty() && arguments.to.empty())))) {
     throw UsageError(
@@ -287,9 +294,17 @@ Run add_path_command(CLI::App& app) {
           {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
   command.add_option("--grid", options.grid, "cells by subdivide (Algorithm I) or grow (Algorithm II)")
       ->transform(one_of<GridMethod>({{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
-  command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
-      ->check(positive_number());
-  command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number());
+  arguments->of_the_flow = {
+      command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
+          ->check(positive_number()),
+      command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number()),
+      command
+          .add_option("--step", options.flow_step,
+                      "flow: time steps of equation (4), implicit, or explicit as in the paper")
+          ->transform(one_of<FlowTimeStep>(
+              {{"implicit", FlowTimeStep::linearly_implicit}, {"explicit", FlowTimeStep::explicit_euler}})),
+      command.add_option("--nodes", options.flow_nodes, "flow: nodes spread evenly, or by the radius of curvature")
+          ->transform(one_of<NodeSpread>({{"even", NodeSpread::even}, {"curvature", NodeSpread::curvature}}))};
   command.add_flag("--all", options.all, "look for every way round, and report each of them");
   command.add_flag("--verify", arguments->verify,
                    "follow the path as an initial-value problem, and say where it lands");

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <vector>
+
+#include "flow_report.hpp"
 
 namespace taut::app {
 namespace {
@@ -82,6 +85,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
                      {"march", result.seconds.march},
                      {"correct", result.seconds.correct},
                      {"total", total_seconds}};
+  if (result.flow) json["flow"] = flow_json(*result.flow);
   json["points"] = points_json(result.points);
   return json;
 }
@@ -116,6 +120,7 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
                                              result.residual.surface, result.residual.geodesic_curvature)});
     facts.push_back({"method", fmt::format("{}, {} iterations", to_string(options.method), result.num_iterations)});
   }
+  if (result.flow) std::ranges::move(flow_facts(*result.flow), std::back_inserter(facts));
   if (result.num_cells > 0) {
     facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(result.num_cells), result.cell)});
   }

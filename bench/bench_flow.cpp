@@ -38,7 +38,7 @@ void quarter_circle(benchmark::State& state, FlowTimeStep time_step) {
     benchmark::DoNotOptimize(result.length);
   }
   state.counters["error"] = 0.5 * std::numbers::pi - result.length;
-  state.counters["model_error"] = result.model_error;
+  state.counters["model_error"] = result.summary.error_sum;
   state.counters["steps"] = result.num_iterations;
   state.counters["converged"] = result.status == taut::Status::ok ? 1 : 0;
 }

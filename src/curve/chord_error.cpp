@@ -1,8 +1,9 @@
 #include "curve/chord_error.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "curve/osculating_circles.hpp"
 
 namespace taut::detail {
 
@@ -15,32 +16,38 @@ double relative_chord_error(double cst) {
 }
 
 ChordError chord_error(const PointsIn& nodes) {
-  const Index m = nodes.cols() - 1;
   ChordError error;
-  if (m < 2) return error;
-  Vector curvature(m + 1);
-  double last = (nodes.col(1) - nodes.col(0)).norm();
-  for (Index i = 1; i < m; ++i) {
-    const double next = (nodes.col(i + 1) - nodes.col(i)).norm();
-    const Vector turn = (nodes.col(i + 1) - nodes.col(i)) / next - (nodes.col(i) - nodes.col(i - 1)) / last;
-    curvature(i) = turn.norm() / (0.5 * (next + last));
-    last = next;
-  }
-  curvature(0) = curvature(1);
-  curvature(m) = curvature(m - 1);
-  double length = 0;
-  double weighted = 0;
-  for (Index i = 0; i < m; ++i) {
-    const double interval = (nodes.col(i + 1) - nodes.col(i)).norm();
-    const double ratio = interval * 0.5 * (curvature(i) + curvature(i + 1));  // eps_i / r_i
-    error.sum += interval * relative_chord_error(ratio);
-    error.max_cst = std::max(error.max_cst, ratio);
-    weighted += interval * ratio * ratio;
-    length += interval;
-  }
-  error.cst = length > 0 ? std::sqrt(weighted / length) : 0;
+  const Vector intervals = interval_lengths(nodes);
+  const Vector ratios = intervals.cwiseProduct(interval_curvatures(nodes));  // eps_i / r_i
+  const double length = intervals.sum();
+  if (!(length > 0)) return error;
+  for (Index i = 0; i < intervals.size(); ++i) error.sum += intervals(i) * relative_chord_error(ratios(i));
+  error.cst = std::sqrt(intervals.dot(ratios.cwiseAbs2()) / length);
   error.uniform = length * relative_chord_error(error.cst);  // (A1)
   return error;
+}
+
+FlowSummary summarise(const PointsIn& nodes) {
+  const ChordError error = chord_error(nodes);
+  FlowSummary summary;
+  summary.num_intervals = nodes.cols() - 1;
+  const Vector intervals = interval_lengths(nodes);
+  summary.length = intervals.sum();
+  summary.mean_interval = intervals.mean();
+  summary.longest_interval = intervals.maxCoeff();
+  summary.cst = error.cst;
+  summary.error_a1 = error.uniform;
+  summary.error_sum = error.sum;
+  return summary;
+}
+
+void set_seconds(double seconds, FlowSummary& summary) {
+  summary.seconds = seconds;
+  summary.seconds_per_node = seconds / static_cast<double>(summary.num_intervals);  // K
+  const double error_per_length = relative_chord_error(summary.cst);
+  if (!(error_per_length > 0 && summary.mean_interval > 0)) return;  // a straight curve takes no nodes
+  summary.seconds_a2 =
+      summary.error_sum * summary.seconds_per_node / (summary.mean_interval * error_per_length);  // (A2)
 }
 
 }  // namespace taut::detail

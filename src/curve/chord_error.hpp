@@ -1,6 +1,7 @@
 #pragma once
 
 #include "taut/core/types.hpp"
+#include "taut/curve/flow_summary.hpp"
 
 namespace taut::detail {
 
@@ -13,11 +14,14 @@ struct ChordError {
   double sum = 0;      ///< sum_i r_i acos(1 - eps_i^2 / (2 r_i^2)) - eps_i, model units
   double uniform = 0;  ///< (A1) with one Cst for the whole curve, model units
   double cst = 0;      ///< root mean square of eps_i / r_i weighted by eps_i
-  double max_cst = 0;  ///< largest eps_i / r_i
 };
 
-/// `nodes`: d x (m + 1), no two successive ones equal. The osculating circle at a node comes from the vector triangle
-/// of Figure 2, that of an interval is the mean of its nodes' curvatures.
+/// `nodes`: d x (m + 1), no two successive ones equal; the circles are those of osculating_circles.hpp.
 [[nodiscard]] ChordError chord_error(const PointsIn& nodes);
+
+/// What a summary says of the polyline itself: m, L, intervals, Cst and both errors.
+[[nodiscard]] FlowSummary summarise(const PointsIn& nodes);
+/// Fills in the time measured, K and (A2).
+void set_seconds(double seconds, FlowSummary& summary);
 
 }  // namespace taut::detail

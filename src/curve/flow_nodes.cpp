@@ -3,7 +3,6 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 namespace taut::detail {
 
@@ -58,7 +57,7 @@ Points FlowNodes::corrected() const {
   return moved;
 }
 
-Repose measure_repose(const FlowNodes& nodes, const PointsIn& points) {
+Repose measure_repose(const FlowNodes& nodes, const PointsIn& points, const VectorIn& widths) {
   Repose repose;
   Vector last = points.col(1) - points.col(0);
   double last_interval = last.norm();
@@ -73,7 +72,8 @@ Repose measure_repose(const FlowNodes& nodes, const PointsIn& points) {
     // Written so that a NaN does not pass for a straight curve.
     const double across = (curvature - along * along.dot(curvature)).norm();
     if (!(across <= repose.geodesic_curvature)) repose.geodesic_curvature = across;
-    const double uneven = std::abs(along.dot(next - last)) / mean;
+    const double ratio = mean / (0.5 * (widths(i) + widths(i - 1)));
+    const double uneven = std::abs(along.dot(next / widths(i) - last / widths(i - 1))) / ratio;
     if (!(uneven <= repose.unevenness)) repose.unevenness = uneven;
     last = next;
     last_interval = next_interval;
@@ -81,26 +81,16 @@ Repose measure_repose(const FlowNodes& nodes, const PointsIn& points) {
   return repose;
 }
 
-Points resample(const PointsIn& points, Index num_intervals) {
-  const Index m = points.cols() - 1;
-  std::vector<double> arc(static_cast<std::size_t>(m + 1), 0.0);
-  for (Index i = 0; i < m; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    arc[at + 1] = arc[at] + (points.col(i + 1) - points.col(i)).norm();
+Vector normal_turns(const FlowNodes& nodes) {
+  Vector turns(nodes.size() - 1);
+  for (Index i = 0; i + 1 < nodes.size(); ++i) {
+    const auto here = nodes.normals(i);
+    const auto there = nodes.normals(i + 1);
+    const Eigen::MatrixXd overlap = here.transpose() * there;
+    const double sine = (there - here * overlap).norm();
+    turns(i) = nodes.codim() == 1 ? std::atan2(sine, overlap(0, 0)) : sine;
   }
-  Points result(points.rows(), num_intervals + 1);
-  result.col(0) = points.col(0);
-  result.col(num_intervals) = points.col(m);
-  Index piece = 0;
-  for (Index j = 1; j < num_intervals; ++j) {
-    const double s = arc.back() * static_cast<double>(j) / static_cast<double>(num_intervals);
-    while (piece + 1 < m && arc[static_cast<std::size_t>(piece + 1)] < s) ++piece;
-    const double begin = arc[static_cast<std::size_t>(piece)];
-    const double width = arc[static_cast<std::size_t>(piece + 1)] - begin;
-    const double u = width > 0 ? std::clamp((s - begin) / width, 0.0, 1.0) : 0.0;
-    result.col(j) = (1 - u) * points.col(piece) + u * points.col(piece + 1);
-  }
-  return result;
+  return turns;
 }
 
 }  // namespace taut::detail

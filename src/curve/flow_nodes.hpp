@@ -54,18 +54,25 @@ class FlowNodes {
   double rank_margin_ = 0;
 };
 
+/// A polyline and how its nodes are to be spread.
+struct FlowCurve {
+  Points points;  ///< d x (m + 1)
+  Vector widths;  ///< m, > 0: what the intervals are to be in proportion to; all the same = evenly
+};
+
 /// How far nodes are from rest: both parts of the tangential C_ss.
 struct Repose {
   double geodesic_curvature = 0;  ///< largest discrete |k_g|: across the curve, 1 / model units
-  double unevenness = 0;          ///< largest difference of neighbouring intervals over their mean: along the curve
+  double unevenness = 0;          ///< largest difference of neighbouring eps_i / w_i over their mean: along the curve
 };
 
 /// Measures (3) at each inner node with the vector triangle of Figure 2: C_ss is the change of the unit tangent over
 /// the mean of the two intervals, its part tangential to the surface and normal to the curve is k_g N. `points` are the
-/// nodes to measure, `nodes` gives the normals.
-[[nodiscard]] Repose measure_repose(const FlowNodes& nodes, const PointsIn& points);
+/// nodes to measure, `nodes` gives the normals. `widths`: m.
+[[nodiscard]] Repose measure_repose(const FlowNodes& nodes, const PointsIn& points, const VectorIn& widths);
 
-/// The polyline's points at equal distances along it, num_intervals + 1 of them, ends exact.
-[[nodiscard]] Points resample(const PointsIn& points, Index num_intervals);
+/// How much the tangent space turns along each interval (m): radians for k = 1; for k > 1 the sine of the largest
+/// angle, which says the same of small ones.
+[[nodiscard]] Vector normal_turns(const FlowNodes& nodes);
 
 }  // namespace taut::detail

@@ -5,30 +5,32 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+
+#include "curve/polyline.hpp"
 
 namespace taut::detail {
 namespace {
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Up to this many tangent directions the implicit system is assembled with its curvature term and factored; beyond, the
 // nodes are coupled through the edges alone, one scalar tridiagonal solve for all coordinates: linear in d.
 constexpr Index kMaxCoupled = 24;
-constexpr double kExplicitStep = 0.25;  // Delta t / Delta h^2; stable below 1/2
-constexpr double kEvenness = 1e-7;      // of an interval, from one to the next
-constexpr Index kMaxIdle = 6;
-constexpr double kMaxOffSurface = 0.25;  // of an interval: a step that leaves the surface farther is too long
-constexpr double kOffSurface = 1e-9;     // of an interval, at rest
+constexpr double kExplicitStep = 0.25;  // Delta t / Delta h^2 for even nodes; stable below 1/2
+constexpr double kEvenness = 1e-7;      // of eps_i / w_i, from one to the next
+constexpr int kMaxIdle = 6;             // steps without progress; of explicit ones a thousand a node
+constexpr double kOffSurface = 1e-9;    // of an interval, at rest
 constexpr int kMaxProjectionSteps = 8;
+constexpr double kMostShift = 1e6;  // a step that long in time is too long for nothing but rounding
 // The same where the noise of F forbids more; a relative length error of some 1e-8 at most.
 constexpr double kNoisyBound = 1e-4;  // |k_g| length
 constexpr double kNoisyEvenness = 1e-4;
 constexpr double kNoisyOffSurface = 1e-6;
 constexpr double kRankMargin = 1e-10;
-
-double energy(const PointsIn& points) {
-  double sum = 0;
-  for (Index i = 0; i + 1 < points.cols(); ++i) sum += (points.col(i + 1) - points.col(i)).squaredNorm();
-  return 0.5 * sum;
-}
+// A step s along the tangent plane leaves the surface by about s^2 / (2 r). One that leaves it by more than this part
+// of s, or turns a node's normal by more than the angle of this cosine, has lost the sheet it started on.
+constexpr double kMostRise = 0.3;
+constexpr double kLeastCosine = 0.3;
 
 /// Longest Newton-Raphson step of an inner node to the surface.
 double off_surface(const FlowNodes& nodes) {
@@ -36,18 +38,33 @@ double off_surface(const FlowNodes& nodes) {
 }
 
 /// What |k_g| is worth at best: positions carry a rounding of some eps |p|, divided by Delta h^2.
-double curvature_noise(const PointsIn& points, double mean_interval) {
-  return 64 * std::numeric_limits<double>::epsilon() * points.cwiseAbs().maxCoeff() / (mean_interval * mean_interval);
+double curvature_noise(const PointsIn& points, double shortest_interval) {
+  return 64 * kEpsilon * points.cwiseAbs().maxCoeff() / (shortest_interval * shortest_interval);
 }
 
 }  // namespace
 
-FlowSolver::FlowSolver(const Surface& surface, const FlowOptions& options, const Context& context)
-    : dim_(surface.dim()),
-      codim_(surface.codim()),
+FlowSolver::FlowSolver(CountingEvaluator& evaluator, Index dim, Index codim, const FlowOptions& options,
+                       Index most_evaluated, const Context& context)
+    : evaluator_(evaluator),
+      dim_(dim),
+      codim_(codim),
       options_(options),
-      context_(context),
-      evaluator_(surface.make_evaluator()) {}
+      most_evaluated_(most_evaluated),
+      context_(context) {}
+
+void FlowSolver::set_widths(const VectorIn& widths) {
+  const Index m = widths.size();
+  widths_ = widths / widths.mean();
+  masses_.resize(m + 1);
+  masses_ << widths_(0) / 2, (widths_.head(m - 1) + widths_.tail(m - 1)) / 2, widths_(m - 1) / 2;
+}
+
+double FlowSolver::energy(const PointsIn& points) const {
+  double sum = 0;
+  for (Index i = 0; i + 1 < points.cols(); ++i) sum += (points.col(i + 1) - points.col(i)).squaredNorm() / widths_(i);
+  return 0.5 * sum;
+}
 
 void FlowSolver::compute_velocity(const FlowNodes& nodes, const Points& q) {
   velocity_.resize(dim_, q.cols());
@@ -57,7 +74,7 @@ void FlowSolver::compute_velocity(const FlowNodes& nodes, const Points& q) {
   multipliers_.setZero();
   Vector pull(dim_);
   for (Index i = 1; i + 1 < q.cols(); ++i) {
-    pull = (q.col(i + 1) - q.col(i)) - (q.col(i) - q.col(i - 1));  // C_ss Delta h^2, Figure 2
+    pull = (q.col(i + 1) - q.col(i)) / widths_(i) - (q.col(i) - q.col(i - 1)) / widths_(i - 1);  // C_ss, Figure 2
     nodes.multipliers(i, -pull, multipliers_.col(i));
     const auto normal = nodes.normals(i);
     velocity_.col(i) = pull - normal * (normal.transpose() * pull);  // (3)
@@ -66,7 +83,7 @@ void FlowSolver::compute_velocity(const FlowNodes& nodes, const Points& q) {
 
 void FlowSolver::compute_hessians(const FlowNodes& nodes) {
   hessians_.resize(dim_ * dim_, nodes.size());
-  evaluator_->evaluate(
+  evaluator_.evaluate(
       {.n = nodes.size(), .x = nodes.points().data(), .weight = multipliers_.data(), .hessian = hessians_.data()});
   hessians_finite_ = hessians_.allFinite();
 }
@@ -107,13 +124,13 @@ void FlowSolver::assemble(const FlowNodes& nodes, double shift, Metric metric) {
       const auto hessian = Eigen::Map<const Eigen::MatrixXd>(hessians_.data() + i * dim_ * dim_, dim_, dim_);
       block.noalias() -= basis.transpose() * (hessian * basis);
     }
-    block.diagonal().array() += 2 + shift;
+    block.diagonal().array() += 1 / widths_(i - 1) + 1 / widths_(i) + shift * masses_(i);
     for (Index r = 0; r < t; ++r) {
       for (Index c = 0; c <= r; ++c) matrix_.at(row + r, row + c) = block(r, c);
     }
     if (i == 1) continue;
     const auto previous = Eigen::Map<const Eigen::MatrixXd>(bases_.data() + (i - 1) * dim_ * t, dim_, t);
-    block.noalias() = -basis.transpose() * previous;
+    block.noalias() = (-1 / widths_(i - 1)) * basis.transpose() * previous;
     for (Index r = 0; r < t; ++r) {
       for (Index c = 0; c < t; ++c) matrix_.at(row + r, row - t + c) = block(r, c);
     }
@@ -140,15 +157,17 @@ bool FlowSolver::implicit_move(const FlowNodes& nodes, double shift, Metric metr
 }
 
 void FlowSolver::ambient_move(const FlowNodes& nodes, double shift, Points& move) const {
-  // (2 + shift) x_i - x_{i-1} - x_{i+1} = velocity_i by elimination, then back into the tangent spaces.
+  // (stiffness + shift M) x = velocity by elimination, then back into the tangent spaces.
   const Index inner = nodes.size() - 2;
   Vector ratio(inner + 1);
   ratio(0) = 0;
   move.setZero(dim_, nodes.size());
   for (Index i = 1; i <= inner; ++i) {
-    const double pivot = 2 + shift - ratio(i - 1);
-    ratio(i) = 1 / pivot;
-    move.col(i) = (velocity_.col(i) + move.col(i - 1)) / pivot;
+    const double before = 1 / widths_(i - 1);
+    const double after = 1 / widths_(i);
+    const double pivot = before + after + shift * masses_(i) - before * ratio(i - 1);
+    ratio(i) = after / pivot;
+    move.col(i) = (velocity_.col(i) + before * move.col(i - 1)) / pivot;
   }
   for (Index i = inner - 1; i >= 1; --i) move.col(i) += ratio(i) * move.col(i + 1);
   for (Index i = 1; i <= inner; ++i) {
@@ -158,123 +177,153 @@ void FlowSolver::ambient_move(const FlowNodes& nodes, double shift, Points& move
   }
 }
 
-FlowState FlowSolver::relax(Points start, double bound) {
-  const Index m = start.cols() - 1;
-  FlowState state{.nodes = FlowNodes(dim_, codim_)};
+/// Energies are compared between nodes on the surface: those of a fresh polyline are not there yet.
+void FlowSolver::project(FlowNodes& nodes) {
   FlowNodes trial(dim_, codim_);
-  state.nodes.evaluate(*evaluator_, std::move(start));
-  if (state.nodes.rank_margin() < kRankMargin) {
-    state.singular = true;
-    return state;
-  }
-  // Energies are compared between nodes on the surface: those of a fresh polyline are not there yet.
-  const double fresh_mean = polyline_length(state.nodes.points()) / static_cast<double>(m);
+  const double mean = polyline_length(nodes.points()) / static_cast<double>(nodes.size() - 1);
   for (int step = 0; step < kMaxProjectionSteps; ++step) {
-    const double off = off_surface(state.nodes);
-    if (off <= 1e-9 * fresh_mean || off > kMaxOffSurface * fresh_mean) break;
-    trial.evaluate(*evaluator_, state.nodes.corrected());
+    const double off = off_surface(nodes);
+    if (off <= kOffSurface * mean || !(off <= mean)) break;
+    trial.evaluate(evaluator_, nodes.corrected());
     if (!(off_surface(trial) < off)) break;
-    std::swap(state.nodes, trial);
+    std::swap(nodes, trial);
   }
-  const bool coupled = dim_ - codim_ <= kMaxCoupled;
-  const bool explicit_step = options_.time_step == FlowTimeStep::explicit_euler;
-  // Delta h^2 / Delta t for a time step in which the longest wave decays: (pi / m)^2.
-  const double slowest = std::pow(std::numbers::pi / static_cast<double>(m), 2);
-  double shift = explicit_step ? 1 / kExplicitStep : slowest;
+}
 
+bool FlowSolver::keeps_to_its_sheet(const FlowNodes& from, const FlowNodes& to) const {
+  for (Index i = 1; i + 1 < from.size(); ++i) {
+    const double moved = (to.points().col(i) - from.points().col(i)).norm();
+    const double off = to.correction().col(i).norm();
+    if (!(off <= kMostRise * moved + 2 * from.correction().col(i).norm() + kNoisyOffSurface * moved)) return false;
+    if (codim_ == 1 && from.normals(i).col(0).dot(to.normals(i).col(0)) < kLeastCosine) return false;
+  }
+  return true;
+}
+
+bool FlowSolver::step_explicitly(FlowNodes& nodes) {
+  double step = 1;  // of Delta h^2, the local one where nodes are not even
+  for (Index i = 1; i + 1 < nodes.size(); ++i) {
+    step = std::min(step, 2 * masses_(i) / (1 / widths_(i - 1) + 1 / widths_(i)));
+  }
+  step *= kExplicitStep;
+  ++num_steps_;
+  compute_velocity(nodes, nodes.points());
+  Points next = nodes.points() + options_.beta * step * nodes.correction();
+  for (Index i = 1; i + 1 < nodes.size(); ++i) next.col(i) += step / masses_(i) * velocity_.col(i);
+  next.col(0) = nodes.points().col(0);
+  next.rightCols<1>() = nodes.points().rightCols<1>();
+  nodes.evaluate(evaluator_, std::move(next));
+  return true;
+}
+
+/// Steps of (4), each taken where the last one came to, the velocity linearised about the nodes. A step that does not
+/// decrease the energy, or loses the sheet, is taken again over a shorter time.
+bool FlowSolver::step_implicitly(FlowNodes& nodes) {
+  const bool coupled = dim_ - codim_ <= kMaxCoupled;
+  const Points on_surface = nodes.corrected();
+  const double before = energy(on_surface);
+  // The part beta F draws the nodes to the surface, implicitly too: a share beta / (beta + shift) of the way.
+  const double share = options_.beta / (options_.beta + shift_);
+  Points q = nodes.points();
+  q.middleCols(1, q.cols() - 2) += share * nodes.correction().middleCols(1, q.cols() - 2);
+  compute_velocity(nodes, q);
+  if (coupled) {
+    compute_bases(nodes);
+    compute_hessians(nodes);
+  }
+  FlowNodes trial(dim_, codim_);
   Points move;
-  Points on_surface = state.nodes.corrected();
-  double best_energy = energy(on_surface);
+  while (shift_ <= kMostShift && !out_of_work()) {
+    ++num_steps_;
+    if (!coupled) {
+      ambient_move(nodes, shift_, move);
+    } else if (!hessians_finite_ || !implicit_move(nodes, shift_, Metric::hessian, move)) {
+      // Not positive definite: the curve is not near a minimum. Without the curvature term it always is.
+      if (!implicit_move(nodes, shift_, Metric::stiffness, move)) return false;
+    }
+    trial.evaluate(evaluator_, q + move);
+    if (trial.rank_margin() >= kRankMargin && keeps_to_its_sheet(nodes, trial) &&
+        energy(trial.corrected()) <= before * (1 + 1e-13 + 0.01 * quiet_)) {
+      std::swap(nodes, trial);
+      shift_ = shift_ < 1e-6 * slowest_ ? 0 : 0.1 * shift_;
+      return true;
+    }
+    shift_ = std::max(10 * shift_, 0.01 * slowest_);
+  }
+  return false;
+}
+
+FlowState FlowSolver::relax(FlowCurve start, double bound) {
+  const Index m = start.points.cols() - 1;
+  const bool explicit_step = options_.time_step == FlowTimeStep::explicit_euler;
+  set_widths(start.widths);
+  FlowState state{.nodes = FlowNodes(dim_, codim_), .widths = widths_};
+  FlowNodes& nodes = state.nodes;
+  nodes.evaluate(evaluator_, std::move(start.points));
+  slowest_ = std::pow(std::numbers::pi / static_cast<double>(m), 2);
+  shift_ = slowest_;
+  quiet_ = kNoisyOffSurface;
+  if (nodes.rank_margin() >= kRankMargin && !explicit_step) project(nodes);
+
   double lowest_curvature = std::numeric_limits<double>::infinity();
   double lowest_energy = std::numeric_limits<double>::infinity();
   Index num_idle = 0;
-  double quiet = kNoisyOffSurface;  // nodes come no nearer to the surface than the noise of F, in intervals
+  Points on_surface;
+  double mean = 0;
+  double off = 0;
+  Repose repose;
   while (true) {
     context_.check_cancelled();
-    const double mean = polyline_length(on_surface) / static_cast<double>(m);
-    const double off = off_surface(state.nodes);
-    quiet = std::min(quiet, off / mean);
-    const Repose repose = measure_repose(state.nodes, on_surface);
-    state.curvature = repose.geodesic_curvature;
-    const double noise = curvature_noise(on_surface, mean);
-    const double rounding = std::numeric_limits<double>::epsilon() * on_surface.cwiseAbs().maxCoeff();
-    if (state.curvature <= std::max(bound, noise) && repose.unevenness <= std::max(kEvenness, 64 * rounding / mean) &&
+    if (nodes.rank_margin() < kRankMargin) {
+      state.outcome = FlowOutcome::singular;
+      return state;
+    }
+    on_surface = nodes.corrected();
+    mean = polyline_length(on_surface) / static_cast<double>(m);
+    off = off_surface(nodes);
+    quiet_ = std::min(quiet_, off / mean);
+    repose = measure_repose(nodes, on_surface, widths_);
+    const double noise = curvature_noise(on_surface, mean * widths_.minCoeff());
+    const double rounding = kEpsilon * on_surface.cwiseAbs().maxCoeff();
+    if (repose.geodesic_curvature <= std::max(bound, noise) &&
+        repose.unevenness <= std::max(kEvenness, 64 * rounding / (mean * widths_.minCoeff())) &&
         off <= std::max(kOffSurface * mean, 64 * rounding)) {
-      state.converged = true;
+      state.outcome = FlowOutcome::at_rest;
       break;
     }
-    // Neither the curvature nor the energy falls any more.
-    if (state.curvature < 0.5 * lowest_curvature || best_energy < lowest_energy * (1 - 1e-12)) {
-      lowest_curvature = std::min(lowest_curvature, state.curvature);
-      lowest_energy = best_energy;
+    // Neither the curvature nor the energy falls any more, nor do nodes come nearer to the surface.
+    const double now = energy(on_surface);
+    if (repose.geodesic_curvature < 0.5 * lowest_curvature || now < lowest_energy * (1 - 1e-12)) {
+      lowest_curvature = std::min(lowest_curvature, repose.geodesic_curvature);
+      lowest_energy = std::min(lowest_energy, now);
       num_idle = 0;
     } else if (++num_idle > (explicit_step ? 1000 * m : kMaxIdle)) {
       break;
     }
-    if (num_steps_ >= options_.max_steps) break;
-
-    // (4): the part beta F draws the nodes to the surface, implicitly too: a share beta / (beta + shift) of the way.
-    const double share = explicit_step ? options_.beta * kExplicitStep : options_.beta / (options_.beta + shift);
-    Points q = state.nodes.points();
-    q.middleCols(1, m - 1) += share * state.nodes.correction().middleCols(1, m - 1);
-    compute_velocity(state.nodes, q);
-    if (!explicit_step && coupled) {
-      compute_bases(state.nodes);
-      compute_hessians(state.nodes);
-    }
-
-    bool accepted = false;
-    while (!accepted) {
-      ++num_steps_;
-      if (explicit_step) {
-        move = kExplicitStep * velocity_;
-      } else if (!coupled) {
-        ambient_move(state.nodes, shift, move);
-      } else if (!hessians_finite_ || !implicit_move(state.nodes, shift, Metric::hessian, move)) {
-        // Not positive definite: the curve is not near a minimum. Without the curvature term it always is.
-        if (!implicit_move(state.nodes, shift, Metric::stiffness, move)) break;
-      }
-      trial.evaluate(*evaluator_, q + move);
-      const double trial_off = off_surface(trial);
-      Points trial_on_surface = trial.corrected();
-      const double trial_energy = energy(trial_on_surface);
-      if (explicit_step || (trial.rank_margin() >= kRankMargin && trial_off <= kMaxOffSurface * mean &&
-                            trial_energy <= best_energy * (1 + 1e-13 + 0.01 * quiet))) {
-        std::swap(state.nodes, trial);
-        on_surface = std::move(trial_on_surface);
-        best_energy = trial_energy;
-        accepted = true;
-        if (!explicit_step) shift = shift < 1e-6 * slowest ? 0 : 0.1 * shift;
-        if (state.nodes.rank_margin() < kRankMargin) {
-          state.singular = true;
-          return state;
-        }
-      } else {
-        shift = std::max(4 * shift, 0.01 * slowest);
-        if (shift > 1e6) break;
-      }
-    }
-    if (!accepted) break;
+    if (out_of_work() || !(explicit_step ? step_explicitly(nodes) : step_implicitly(nodes))) break;
   }
-  if (!state.converged && num_steps_ < options_.max_steps && options_.curvature_bound == 0) {
+  if (state.outcome != FlowOutcome::at_rest && out_of_work()) state.outcome = FlowOutcome::out_of_work;
+  if (state.outcome != FlowOutcome::at_rest && options_.curvature_bound == 0) {
     // Stopped by the noise of F (a smoothed fit carries 1e-10 of its size)? Then what is left is small all the same.
-    const double length = polyline_length(on_surface);
-    const Repose repose = measure_repose(state.nodes, on_surface);
-    state.converged = repose.geodesic_curvature * length <= kNoisyBound && repose.unevenness <= kNoisyEvenness &&
-                      off_surface(state.nodes) <= kNoisyOffSurface * length / static_cast<double>(m);
+    const double length = mean * static_cast<double>(m);
+    if (repose.geodesic_curvature * length <= kNoisyBound && repose.unevenness <= kNoisyEvenness &&
+        off <= kNoisyOffSurface * mean) {
+      state.outcome = FlowOutcome::at_rest;
+    }
   }
-  state.nodes.evaluate(*evaluator_, std::move(on_surface));
+  if (!explicit_step) nodes.evaluate(evaluator_, std::move(on_surface));
   return state;
 }
 
-Index FlowSolver::first_conjugate_node(const FlowNodes& nodes) {
+Index FlowSolver::first_conjugate_node(const FlowState& state) {
   const Index t = dim_ - codim_;
   if (t > kMaxCoupled) return -1;
-  compute_velocity(nodes, nodes.points());
-  compute_hessians(nodes);
+  set_widths(state.widths);
+  compute_velocity(state.nodes, state.nodes.points());
+  compute_hessians(state.nodes);
   if (!hessians_finite_) return -1;
-  compute_bases(nodes);
-  assemble(nodes, 0, Metric::hessian);
+  compute_bases(state.nodes);
+  assemble(state.nodes, 0, Metric::hessian);
   const Index row = matrix_.factor();
   return row < 0 ? 0 : row / t + 1;
 }

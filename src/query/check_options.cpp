@@ -18,6 +18,12 @@ void check_options(const PathOptions& options) {
   if (!(options.beta > 0) || !std::isfinite(options.beta)) {
     throw InvalidArgument(fmt::format("beta {}: must be positive", options.beta));
   }
+  if (options.beta > 4 && options.flow_step == FlowTimeStep::explicit_euler) {
+    throw InvalidArgument(
+        fmt::format("beta {}: must be at most 4 with explicit steps, beyond that nodes overshoot the "
+                    "surface",
+                    options.beta));
+  }
 }
 
 }  // namespace taut::detail

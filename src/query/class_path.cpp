@@ -8,9 +8,10 @@
 
 #include "query/check_options.hpp"
 #include "query/class_setting.hpp"
+#include "query/flow_options.hpp"
 #include "query/geodesic_polygon.hpp"
 #include "query/stopwatch.hpp"
-#include "taut/curve/flow.hpp"
+#include "taut/cells/cell_grid.hpp"
 #include "taut/curve/newton.hpp"
 
 namespace taut {
@@ -46,8 +47,10 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   std::optional<NewtonSolver> newton;
   const auto correct = [&](const Points& start) -> Geodesic {
     if (options.method == CorrectionMethod::flow) {
-      return correct_flow(surface, start, {.spacing = options.spacing, .cell = setting.cell, .beta = options.beta},
-                          context);
+      FlowLattice lattice{setting.cell, lattice_origin(result.from, setting.cell)};
+      FlowResult flowed = correct_flow(surface, start, detail::flow_options(options, std::move(lattice)), context);
+      result.flow = flowed.summary;
+      return std::move(static_cast<Geodesic&>(flowed));
     }
     if (!newton) newton.emplace(surface, NewtonOptions{.tolerance = options.tolerance});
     return newton->solve(start, context);
@@ -95,6 +98,7 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   } else if (!followed) {
     geodesic = uncorrected(shortening);
   }
+  if (is_point || !followed) result.flow.reset();
   geodesic.num_iterations += result.num_iterations;
   static_cast<Geodesic&>(result) = std::move(geodesic);
   result.message =

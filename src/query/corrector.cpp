@@ -13,11 +13,11 @@
 #include "curve/polyline.hpp"
 #include "query/candidates.hpp"
 #include "query/contender.hpp"
+#include "query/flow_options.hpp"
 #include "query/shortening.hpp"
 #include "query/splices.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/core/error.hpp"
-#include "taut/curve/flow.hpp"
 
 namespace taut::detail {
 namespace {
@@ -157,9 +157,9 @@ void Corrector::explain(Corrected& corrected) const {
   }
 }
 
-Corrector::Corrected Corrector::shorten(const Choice& choice, double cell, std::size_t worker) {
+Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice& lattice, std::size_t worker) {
   const Points& start = choice.start;
-  Corrected corrected{{}, {}, start};
+  Corrected corrected{{}, {}, start, {}};
   Geodesic& geodesic = corrected.geodesic;
   const double start_length = polyline_length(start);
   switch (options_.method) {
@@ -167,10 +167,12 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, double cell, std::
       if (choice.rough) geodesic = newton(worker).refine(*choice.rough, context_);
       if (!choice.rough || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
       break;
-    case CorrectionMethod::flow:
-      geodesic =
-          correct_flow(surface_, start, {.spacing = options_.spacing, .cell = cell, .beta = options_.beta}, context_);
+    case CorrectionMethod::flow: {
+      FlowResult flowed = correct_flow(surface_, start, flow_options(options_, lattice), context_);
+      corrected.flow = flowed.summary;
+      geodesic = std::move(static_cast<Geodesic&>(flowed));
       break;
+    }
     case CorrectionMethod::grid:
       geodesic.points = start;
       geodesic.length = start_length;
@@ -249,9 +251,11 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
   Hope hope(selects ? 0 : starts.error);
   std::vector<Corrected> corrected(choices.size());
+  FlowLattice lattice;
+  if (starts.cells) lattice = {starts.cells->grid().size(), starts.cells->grid().origin()};
   in_waves(
       choices.size(), [&](std::size_t j) { return options_.all || !hope.is_lost(choices[j].length); },
-      [&](std::size_t j, std::size_t worker) { corrected[j] = shorten(choices[j], starts.cell, worker); },
+      [&](std::size_t j, std::size_t worker) { corrected[j] = shorten(choices[j], lattice, worker); },
       [&](std::size_t j) {
         const Geodesic& geodesic = corrected[j].geodesic;
         if (is_geodesic(geodesic)) {
@@ -276,11 +280,12 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
     if (!gently) continue;
     if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));
     if (!is_better(*gently, best->geodesic)) continue;
-    best = Corrected{*std::move(gently), {}, choice->start};
+    best = Corrected{*std::move(gently), {}, choice->start, {}};
     explain(*best);
   }
   static_cast<Geodesic&>(result) = std::move(best->geodesic);
   result.message = std::move(best->message);
+  result.flow = best->flow;
   result.grid_path = std::move(best->start);
   result.candidates = std::move(candidates);
   result.unique = first_is_unique(result.candidates, options_.tolerance);

@@ -30,6 +30,7 @@ class Corrector {
     Geodesic geodesic;
     std::string message;
     Points start;
+    std::optional<FlowSummary> flow;
   };
 
   [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start);
@@ -47,7 +48,7 @@ class Corrector {
   /// in vain.
   template <class Hopeful, class Work, class Take>
   void in_waves(std::size_t n, const Hopeful& hopeful, const Work& work, const Take& take) const;
-  [[nodiscard]] Corrected shorten(const Choice& choice, double cell, std::size_t worker);
+  [[nodiscard]] Corrected shorten(const Choice& choice, const FlowLattice& lattice, std::size_t worker);
   [[nodiscard]] std::vector<Choice> choose(const Starts& given);
 
   /// The solvers of a worker, made when they are first needed.

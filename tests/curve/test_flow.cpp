@@ -47,7 +47,7 @@ double measured_order(const Surface& surface, const Points& start, double truth,
     const double error = truth - result.length;
     EXPECT_GT(error, 0) << "a polyline of chords is shorter than its geodesic";
     EXPECT_LE(error, result.length_error);
-    EXPECT_NEAR(result.model_error, error, 0.05 * error) << "(A1) at spacing " << options.spacing;
+    EXPECT_NEAR(result.summary.error_sum, error, 0.05 * error) << "(A1) at spacing " << options.spacing;
     if (i == 0) first = error;
     last = error;
   }
@@ -139,18 +139,6 @@ TEST(Flow, ExplicitStepsComeToRestOnTheSameCurve) {
   EXPECT_LT((explicit_result.points - implicit.points).cwiseAbs().maxCoeff(), 1e-5);
 }
 
-TEST(Flow, BetaChangesTheWayAndNotTheResult) {
-  const Points start = noisy_chord(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), 20, 0.05, 9);
-  const FlowResult reference = correct_flow(unit_sphere(), start);
-  for (const double beta : {0.05, 0.5, 20.0}) {
-    FlowOptions options;
-    options.beta = beta;
-    const FlowResult result = correct_flow(unit_sphere(), start, options);
-    EXPECT_EQ(result.status, Status::ok) << result.reason;
-    EXPECT_NEAR(result.length, reference.length, 1e-9) << "beta = " << beta;
-  }
-}
-
 TEST(Flow, NodesAreEvenAndNoIntervalExceedsTheSpacing) {
   FlowOptions options;
   options.spacing = 0.031;
@@ -161,19 +149,8 @@ TEST(Flow, NodesAreEvenAndNoIntervalExceedsTheSpacing) {
   const auto intervals = (result.points.rightCols(m) - result.points.leftCols(m)).colwise().norm().eval();
   EXPECT_LE(intervals.maxCoeff(), options.spacing);
   EXPECT_LT(intervals.maxCoeff() / intervals.minCoeff(), 1.01);
-  EXPECT_GT(result.num_inserted, 0);
+  EXPECT_GT(result.summary.num_inserted, 0);
   EXPECT_NEAR(intervals.sum(), result.length, 1e-12);
-}
-
-TEST(Flow, PlaneInsertionFillsGapsInsideOneCell) {
-  FlowOptions options;
-  options.spacing = 0.02;
-  options.cell = 0.15;
-  const Points start = noisy_chord(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), 8, 0.0, 11);
-  const FlowResult with_cells = correct_flow(unit_sphere(), start, options);
-  ASSERT_EQ(with_cells.status, Status::ok) << with_cells.reason;
-  EXPECT_GT(with_cells.num_plane_inserted, 0);
-  EXPECT_NEAR(with_cells.length, kPi / 2, 1e-4);
 }
 
 TEST(Flow, ConjugatePointInsideIsFound) {
@@ -188,7 +165,7 @@ TEST(Flow, ConjugatePointInsideIsFound) {
   EXPECT_NEAR(result.length, 1.5 * kPi, 1e-4 * 1.5 * kPi);
   EXPECT_FALSE(result.locally_shortest);
   ASSERT_TRUE(result.conjugate_at.has_value());
-  EXPECT_NEAR(*result.conjugate_at, kPi, 2 * result.spacing);
+  EXPECT_NEAR(*result.conjugate_at, kPi, 2 * result.summary.longest_interval);
 }
 
 TEST(Flow, ScaleAndUnitsOfFDoNotMatter) {
@@ -219,7 +196,7 @@ TEST(Flow, EndsCloserThanItsNodesCouldBeAreJoinedByTheirChord) {
     ends.col(0) = Eigen::Vector3d(2 * std::cos(0.3), std::sin(0.3), 0);
     ends.col(1) = Eigen::Vector3d(2 * std::cos(0.3 + apart), std::sin(0.3 + apart), 0);
     const double chord = (ends.col(1) - ends.col(0)).norm();
-    const FlowResult result = correct_flow(surface, ends, {.max_steps = 200});
+    const FlowResult result = correct_flow(surface, ends, {.max_evaluated = 4000});
     EXPECT_EQ(result.status, Status::ok) << result.reason << " at " << apart;
     EXPECT_TRUE(result.locally_shortest) << apart;
     EXPECT_GE(result.length, chord * (1 - 1e-12));
@@ -327,17 +304,6 @@ TEST(Flow, StopsWhenCancelled) {
       (void)correct_flow(unit_sphere(), noisy_chord(Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0), 4, 0, 20), {},
                          context),
       Cancelled);
-}
-
-TEST(Flow, TooFewStepsAreNotConverged) {
-  FlowOptions options;
-  options.max_steps = 1;
-  const FlowResult result = correct_flow(
-      ellipsoid(3, 2, 1),
-      noisy_chord(Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0, 0.8, 0.916515138991168), 12, 0.05, 21), options);
-  EXPECT_EQ(result.status, Status::not_converged);
-  EXPECT_FALSE(result.reason.empty());
-  EXPECT_GT(result.length_error, 0);
 }
 
 }  // namespace

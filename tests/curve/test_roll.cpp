@@ -30,7 +30,7 @@ TEST(Roll, GeodesicsGoRoundAndDoNotJumpBetweenTheTurns) {
       march_options.target = q;
       const DistanceField field = march(roll, cells, p, march_options);
       FlowOptions options;
-      options.cell = cell;
+      options.lattice = {cells.grid().size(), cells.grid().origin()};
       const FlowResult path = correct_flow(roll, descend(roll, cells, field, q), options);
       ASSERT_EQ(path.status, Status::ok) << path.reason << ", cell " << cell;
       EXPECT_NEAR(path.length, truth, 0.01 * truth) << "cell " << cell;

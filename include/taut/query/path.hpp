@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "taut/core/context.hpp"
+#include "taut/curve/flow.hpp"
 #include "taut/curve/geodesic.hpp"
 #include "taut/march/march.hpp"
 #include "taut/surface/surface.hpp"
@@ -35,8 +37,10 @@ struct PathOptions {
   double tolerance = 1e-9;
   /// eps_E, the node spacing of the flow, model units; 0 = chosen.
   double spacing = 0;
-  /// beta of the flow's equation (4).
+  /// beta of the flow's equation (4), at most 4 with explicit steps.
   double beta = 1;
+  FlowTimeStep flow_step = FlowTimeStep::linearly_implicit;
+  NodeSpread flow_nodes = NodeSpread::even;
   /// Look for every way round, however long, not only for rivals of the shortest.
   bool all = false;
 };
@@ -74,6 +78,8 @@ struct PathResult : Geodesic {
   /// tells no ways apart), `unique` says nothing, and the path may not be the shortest; PathOptions::all looks always.
   bool rivals_sought = true;
   PathSeconds seconds;
+  /// Appendix II of the paper, of this curve; empty where no flow corrected it.
+  std::optional<FlowSummary> flow;
 };
 
 /// Shortest paths on one surface: keeps the cells, so that asking again is cheap. Not safe to share between threads.
