@@ -50,8 +50,8 @@ class Camera {
   double shift_y_ = 0;
 };
 
-/// The direction from which most of the paths is seen, long and unhidden, with a slight liking for the usual view from
-/// a little above; that usual view where there are no paths.
+/// The direction from which most of the paths and points is seen, long, unhidden and from outside, and an open surface
+/// from the side its normals face; with a slight liking for the usual view from a little above.
 Eigen::Vector3d choose_view(const Stage& stage);
 
 }  // namespace taut::detail

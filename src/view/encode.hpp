@@ -3,12 +3,9 @@
 #include <string>
 #include <string_view>
 
-#include "view/raster.hpp"
+#include "taut/view/scene.hpp"
 
 namespace taut::detail {
-
-/// A PNG file's bytes: 8 bits a channel, with alpha when `keep_alpha`, else over white.
-std::string encode_png(const Image& image, bool keep_alpha);
 
 std::string base64(std::string_view bytes);
 

@@ -4,17 +4,23 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <utility>
 
 #include "core/parallel.hpp"
+#include "view/cell_skin.hpp"
 #include "view/shading.hpp"
 #include "view/tube.hpp"
 
 namespace taut::detail {
 namespace {
 
-constexpr int kSamples = 3;      // a side of a pixel
-constexpr int kBandHeight = 16;  // pixels drawn at a time by one thread
-constexpr float kFaint = 0.30F;  // opacity of a path behind a surface
+constexpr int kSamples = 3;       // a side of a pixel
+constexpr int kBandHeight = 16;   // pixels drawn at a time by one thread
+constexpr int kBandsAtATime = 6;  // by one thread, in the same memory
+constexpr float kFaint = 0.30F;   // opacity of a path behind a surface
+constexpr float kCellOpacity = 0.30F;
+constexpr float kCellEdgeOpacity = 0.75F;
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 /// The isolines of a scalar: this many, and this dark.
 constexpr int kIsolines = 12;
@@ -30,7 +36,7 @@ struct ScreenVertex {
   Eigen::Vector3f view;    // towards the viewer, in camera axes
 };
 
-enum class Layer : std::uint8_t { surface, path };
+enum class Layer : std::uint8_t { surface, cells, path };
 
 /// Triangles of one mesh, tube or ball on the screen.
 struct Batch {
@@ -41,6 +47,16 @@ struct Batch {
   const Eigen::Matrix3Xf* colours = nullptr;
   Layer layer = Layer::surface;
   float gloss = 0.10F;
+  float opacity = 1;
+};
+
+/// A line about a pixel wide.
+struct ScreenLine {
+  Seen a;
+  Seen b;
+  Rgb colour;  // linear
+  Layer layer = Layer::surface;
+  float opacity = 1;
 };
 
 struct ScalarScale {
@@ -110,12 +126,16 @@ struct Triangle {
 /// Rows first_row .. last_row of the samples, with their depth and colour for either layer.
 class Band {
  public:
-  Band(int width, int first_row, int last_row, const ScalarScale& scale)
-      : width_(width), first_row_(first_row), last_row_(last_row), scale_(scale) {
-    const auto n = static_cast<std::size_t>(width) * static_cast<std::size_t>(last_row - first_row + 1);
+  Band(int width, const ScalarScale& scale) : width_(width), scale_(scale) {}
+
+  /// Empties it and moves it to other rows; its memory is used again.
+  void move_to(int first_row, int last_row) {
+    first_row_ = first_row;
+    last_row_ = last_row;
+    const auto n = static_cast<std::size_t>(width_) * static_cast<std::size_t>(last_row - first_row + 1);
     for (Plane& plane : planes_) {
       plane.nearness.assign(n, kNothing);
-      plane.colour.resize(3 * n);
+      plane.colour.resize(4 * n);
     }
   }
 
@@ -130,8 +150,11 @@ class Band {
     }
   }
 
-  /// A line one pixel wide, as a strip of samples.
-  void draw_line(const Seen& a, const Seen& b, const Rgb& colour) {
+  void draw(const ScreenLine& line) {
+    const auto [a, b] = std::pair(line.a, line.b);
+    if (std::max(a.y, b.y) * kSamples < first_row_ - kSamples || std::min(a.y, b.y) * kSamples > last_row_ + kSamples) {
+      return;
+    }
     const double steps = std::ceil(std::max({1.0, std::abs(b.x - a.x), std::abs(b.y - a.y)}) * kSamples);
     for (int k = 0; k <= static_cast<int>(steps); ++k) {
       const double t = k / steps;
@@ -141,7 +164,7 @@ class Band {
       constexpr int kHalf = kSamples / 2;
       for (int y = std::max(cy - kHalf, first_row_); y <= std::min(cy + kHalf, last_row_); ++y) {
         for (int x = std::max(cx - kHalf, 0); x <= std::min(cx + kHalf, width_ - 1); ++x) {
-          put(planes_[0], x, y, nearness, colour);
+          put(plane(line.layer), x, y, nearness, line.colour, line.opacity);
         }
       }
     }
@@ -150,14 +173,15 @@ class Band {
   /// The colour of a sample: linear, multiplied by alpha, with alpha.
   [[nodiscard]] Eigen::Array4f resolve(int x, int y) const {
     const std::size_t i = index(x, y);
-    const Plane& surface = planes_[0];
-    const Plane& path = planes_[1];
     Eigen::Array4f result = Eigen::Array4f::Zero();
-    if (surface.nearness[i] > kNothing)
-      result << surface.colour[3 * i], surface.colour[3 * i + 1], surface.colour[3 * i + 2], 1;
-    if (path.nearness[i] > kNothing) {
-      const float opacity = path.nearness[i] >= surface.nearness[i] ? 1 : kFaint;
-      const Eigen::Array4f over(path.colour[3 * i], path.colour[3 * i + 1], path.colour[3 * i + 2], 1);
+    const float surface = planes_[0].nearness[i];
+    for (const Plane& plane : planes_) {
+      const float nearness = plane.nearness[i];
+      if (nearness == kNothing) continue;
+      const bool is_path = &plane == &planes_.back();
+      if (!is_path && nearness < surface) continue;  // cells behind the surface are not seen
+      const float opacity = plane.colour[4 * i + 3] * (nearness >= surface ? 1 : kFaint);
+      const Eigen::Array4f over(plane.colour[4 * i], plane.colour[4 * i + 1], plane.colour[4 * i + 2], 1);
       result = opacity * over + (1 - opacity) * result;
     }
     return result;
@@ -166,23 +190,26 @@ class Band {
  private:
   struct Plane {
     std::vector<float> nearness;
-    std::vector<float> colour;
+    std::vector<float> colour;  // red, green, blue, opacity
   };
+
+  [[nodiscard]] Plane& plane(Layer layer) { return planes_[static_cast<std::size_t>(layer)]; }
 
   [[nodiscard]] std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - first_row_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
-  void put(Plane& plane, int x, int y, float nearness, const Rgb& colour) const {
+  void put(Plane& plane, int x, int y, float nearness, const Rgb& colour, float opacity) const {
     const std::size_t i = index(x, y);
     if (nearness <= plane.nearness[i]) return;
     plane.nearness[i] = nearness;
     for (std::size_t channel = 0; channel < 3; ++channel)
-      plane.colour[3 * i + channel] = colour(static_cast<Index>(channel));
+      plane.colour[4 * i + channel] = colour(static_cast<Index>(channel));
+    plane.colour[4 * i + 3] = opacity;
   }
 
   void fill(const Batch& batch, const Triangle& t, const Eigen::Vector3i& face) {
-    Plane& plane = planes_[static_cast<std::size_t>(batch.layer)];
+    Plane& drawn = plane(batch.layer);
     const float slope = scalar_slope(batch, t, face);
     for (int y = t.y0; y <= t.y1; ++y) {
       for (int x = t.x0; x <= t.x1; ++x) {
@@ -196,11 +223,11 @@ class Band {
         if (!inside) continue;
         const float nearness =
             u[0] * t.corner[0]->nearness + u[1] * t.corner[1]->nearness + u[2] * t.corner[2]->nearness;
-        if (nearness <= plane.nearness[index(x, y)]) continue;
+        if (nearness <= drawn.nearness[index(x, y)]) continue;
         for (std::size_t i = 0; i < 3; ++i) u[i] *= t.corner[i]->weight;
         const float sum = u[0] + u[1] + u[2];
         for (float& value : u) value /= sum;
-        put(plane, x, y, nearness, colour_at(batch, t, face, u, slope));
+        put(drawn, x, y, nearness, colour_at(batch, t, face, u, slope), batch.opacity);
       }
     }
   }
@@ -254,10 +281,10 @@ class Band {
   }
 
   int width_;
-  int first_row_;
-  int last_row_;
+  int first_row_ = 0;
+  int last_row_ = -1;
   ScalarScale scale_;
-  std::array<Plane, 2> planes_;
+  std::array<Plane, 3> planes_;  // by layer
 };
 
 void write_pixels(const Band& band, int first, int last, Image& image) {
@@ -280,52 +307,116 @@ void write_pixels(const Band& band, int first, int last, Image& image) {
   }
 }
 
+/// Everything of a stage on the screen.
+class Screen {
+ public:
+  Screen(const Stage& stage, const Camera& camera, const RenderOptions& options)
+      : stage_(stage), camera_(camera), project_(camera, kSamples) {
+    for (const StageMesh& mesh : stage.meshes) add(mesh);
+    for (const StageLines& lines : stage.lines) {
+      add_lines(lines.positions, lines.segments, 0, to_linear(lines.colour), Layer::surface, 1);
+    }
+    if (stage.cells_shown && stage.cell_size > 0) add_cells();
+    if (options.paths) add_paths(0.5 * options.path_width / camera.scale());
+  }
+
+  void draw(Band& band) const {
+    for (const Batch& batch : batches_) band.draw(batch);
+    for (const ScreenLine& line : lines_) band.draw(line);
+  }
+
+ private:
+  void add(const StageMesh& mesh) {
+    Batch batch{
+        .vertices = project_(mesh.positions, mesh.normals, 0), .faces = &mesh.faces, .colour = to_linear(mesh.colour)};
+    if (mesh.scalar.size() > 0) batch.scalar = &mesh.scalar;
+    if (mesh.colours.cols() > 0) batch.colours = &mesh.colours;
+    batches_.push_back(std::move(batch));
+  }
+
+  /// `lift`: how far the lines stand out of what they lie on, towards the viewer.
+  void add_lines(const Eigen::Matrix3Xf& positions, const Eigen::Matrix2Xi& segments, double lift, const Rgb& colour,
+                 Layer layer, float opacity) {
+    std::vector<Seen> seen;
+    seen.reserve(static_cast<std::size_t>(positions.cols()));
+    for (const auto& position : positions.colwise()) {
+      const Eigen::Vector3d x = position.cast<double>();
+      seen.push_back(camera_.see(x));
+      if (lift > 0) seen.back().nearness = camera_.see(x + lift * camera_.towards_viewer(x)).nearness;
+    }
+    for (const auto& segment : segments.colwise()) {
+      lines_.push_back({seen[static_cast<std::size_t>(segment(0))], seen[static_cast<std::size_t>(segment(1))], colour,
+                        layer, opacity});
+    }
+  }
+
+  void add_cells() {
+    skin_ = make_cell_skin(stage_);
+    const Rgb colour = to_linear(stage_.cell_colour);
+    batches_.push_back({.vertices = project_(skin_.positions, skin_.normals, 0),
+                        .faces = &skin_.faces,
+                        .colour = colour,
+                        .layer = Layer::cells,
+                        .gloss = 0,
+                        .opacity = kCellOpacity});
+    add_lines(skin_.positions, skin_.edges, 0.05 * static_cast<double>(stage_.cell_size), 0.5F * colour, Layer::cells,
+              kCellEdgeOpacity);
+  }
+
+  void add_paths(double radius) {
+    const double lift = kPathLift * stage_.radius;
+    const auto add_tube = [&](Tube tube, const Colour& colour, double extra_lift) {
+      tubes_.push_back(std::make_unique<Tube>(std::move(tube)));
+      const Tube& kept = *tubes_.back();
+      batches_.push_back({.vertices = project_(kept.positions, kept.normals, lift + extra_lift),
+                          .faces = &kept.faces,
+                          .colour = to_linear(colour),
+                          .layer = Layer::path,
+                          .gloss = 0.22F});
+    };
+    for (const StagePath& path : stage_.paths) {
+      const auto thick = static_cast<float>(radius * path.width);
+      if (!path.failed) {
+        add_tube(make_tube(path.positions, thick), path.colour, 0);
+        continue;
+      }
+      for (const Eigen::Matrix3Xf& dash : dashes_of(path.positions, kDash * stage_.radius, kDashGap * stage_.radius)) {
+        add_tube(make_tube(dash, thick), path.colour, 0);
+      }
+    }
+    for (const StagePoint& point : stage_.points) {
+      const double ball = 2 * radius * point.size;
+      add_tube(make_ball(point.position, static_cast<float>(ball)), point.colour, 0.5 * ball);
+    }
+  }
+
+  const Stage& stage_;
+  const Camera& camera_;
+  Projector project_;
+  std::vector<Batch> batches_;
+  std::vector<ScreenLine> lines_;
+  std::vector<std::unique_ptr<Tube>> tubes_;  // what batches point into
+  CellSkin skin_;
+};
+
 }  // namespace
 
 Image render(const Stage& stage, const Camera& camera, const RenderOptions& options, const Context& context) {
-  const Projector project(camera, kSamples);
-  std::vector<Batch> batches;
-  for (const StageMesh& mesh : stage.meshes) {
-    Batch batch{
-        .vertices = project(mesh.positions, mesh.normals, 0), .faces = &mesh.faces, .colour = to_linear(mesh.colour)};
-    if (mesh.scalar.size() > 0) batch.scalar = &mesh.scalar;
-    if (mesh.colours.cols() > 0) batch.colours = &mesh.colours;
-    batches.push_back(std::move(batch));
-  }
-  std::vector<Tube> tubes;
-  if (options.paths) {
-    const auto radius = static_cast<float>(0.5 * options.path_width / camera.scale());
-    const double lift = kPathLift * stage.radius;
-    tubes.reserve(stage.paths.size() + stage.points.size());
-    const auto add = [&](Tube tube, const Colour& colour, double extra_lift) {
-      tubes.push_back(std::move(tube));
-      const Tube& kept = tubes.back();
-      batches.push_back({.vertices = project(kept.positions, kept.normals, lift + extra_lift),
-                         .faces = &kept.faces,
-                         .colour = to_linear(colour),
-                         .layer = Layer::path,
-                         .gloss = 0.22F});
-    };
-    for (const StagePath& path : stage.paths) add(make_tube(path.positions, radius), path.colour, 0);
-    for (const StagePoint& point : stage.points) add(make_ball(point.position, 2.0F * radius), point.colour, radius);
-  }
+  const Screen screen(stage, camera, options);
   const double range = stage.scalar_max - stage.scalar_min;
+  const bool isolines = options.isolines && !stage.scalar_name.empty();
   const ScalarScale scale{static_cast<float>(stage.scalar_min), static_cast<float>(stage.scalar_max),
-                          stage.scalar_name.empty() ? 0 : static_cast<float>(nice_step(range, kIsolines))};
+                          isolines ? static_cast<float>(nice_step(range, kIsolines)) : 0};
   Image image{options.width, options.height, {}};
   image.rgba.assign(4 * static_cast<std::size_t>(options.width) * static_cast<std::size_t>(options.height), 0);
-  parallel_for(context, 0, options.height, kBandHeight, [&](Index first, Index last) {
-    Band band(kSamples * options.width, kSamples * static_cast<int>(first), kSamples * static_cast<int>(last) - 1,
-              scale);
-    for (const Batch& batch : batches) band.draw(batch);
-    for (const StageLines& lines : stage.lines) {
-      const Rgb colour = to_linear(lines.colour);
-      for (const auto& segment : lines.segments.colwise()) {
-        band.draw_line(camera.see(lines.positions.col(segment(0)).cast<double>()),
-                       camera.see(lines.positions.col(segment(1)).cast<double>()), colour);
-      }
+  parallel_for(context, 0, options.height, kBandsAtATime * kBandHeight, [&](Index first, Index last) {
+    Band band(kSamples * options.width, scale);
+    for (Index row = first; row < last; row += kBandHeight) {
+      const Index end = std::min<Index>(row + kBandHeight, last);
+      band.move_to(kSamples * static_cast<int>(row), kSamples * static_cast<int>(end) - 1);
+      screen.draw(band);
+      write_pixels(band, static_cast<int>(row), static_cast<int>(end), image);
     }
-    write_pixels(band, static_cast<int>(first), static_cast<int>(last), image);
   });
   return image;
 }

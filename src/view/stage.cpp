@@ -10,7 +10,8 @@
 
 #include "taut/core/error.hpp"
 
-namespace taut::detail {
+namespace taut {
+namespace detail {
 namespace {
 
 constexpr Colour kSurfaceColour = Colour::hex(0xC9D3DE);
@@ -18,7 +19,12 @@ constexpr Colour kLineColour = Colour::hex(0x5B6B7C);
 /// Apart from each other and from the surface for the common kinds of colour blindness too.
 constexpr std::array<Colour, 6> kPathColours = {Colour::hex(0xE4482B), Colour::hex(0x1F77C9), Colour::hex(0xF0A202),
                                                 Colour::hex(0x1E9E6A), Colour::hex(0x9455C8), Colour::hex(0x12A5B0)};
+constexpr Colour kFailedColour = Colour::hex(0xC77700);
 constexpr Colour kPointColour = Colour::hex(0x1B2733);
+constexpr Colour kCellColour = Colour::hex(0x2E9E5B);
+/// Up to so many paths have the usual width; the area they cover grows no further beyond.
+constexpr double kPathsAtFullWidth = 8;
+constexpr double kThinnest = 0.3;
 
 /// Brings every part of a scene into three dimensions.
 class Projection {
@@ -212,20 +218,26 @@ void find_radius(Stage& stage) {
   for (const StageLines& lines : stage.lines) reach(lines.positions);
   for (const StagePath& path : stage.paths) reach(path.positions);
   for (const StagePoint& point : stage.points) reach(point.position);
-  if (radius == 0) {
+  if (radius == 0 || stage.cells_shown) {
     reach(stage.cell_centres);
-    radius += stage.cell_size;
+    radius += static_cast<double>(stage.cell_size);
   }
   stage.radius = radius > 0 ? radius : 1;
 }
 
 }  // namespace
+}  // namespace detail
+
+Colour path_colour(std::size_t index) { return detail::kPathColours[index % detail::kPathColours.size()]; }
+
+namespace detail {
 
 Stage make_stage(const Scene& scene) {
   const Projection project(scene);
   Stage stage;
   stage.flat = project.dim() == 2;
   stage.origin = project.middle();
+  stage.title = scene.title;
   stage.caption = scene.caption;
   if (project.dim() > 3) {
     stage.caption.push_back(
@@ -238,28 +250,73 @@ Stage make_stage(const Scene& scene) {
     stage.lines.push_back(
         {project(lines.vertices, "a line"), lines.segments, lines.colour.value_or(kLineColour), lines.name});
   }
+  const double crowding = std::clamp(
+      std::sqrt(kPathsAtFullWidth / static_cast<double>(std::max<std::size_t>(scene.paths.size(), 1))), kThinnest, 1.0);
   for (const ScenePath& path : scene.paths) {
     if (path.points.cols() == 0) continue;
-    const Colour chosen = kPathColours[stage.paths.size() % kPathColours.size()];
+    const Colour chosen = path.failed ? kFailedColour : path_colour(stage.paths.size());
     const double length = std::isnan(path.length) ? polyline_length(path.points) : path.length;
-    stage.paths.push_back({project(path.points, "a path"), path.colour.value_or(chosen), path.label, length});
+    if (!(path.width > 0) || !std::isfinite(path.width)) throw InvalidArgument("a path's width must be positive");
+    stage.paths.push_back({project(path.points, "a path"), path.colour.value_or(chosen), path.label, length,
+                           path.width * crowding, path.failed});
   }
   for (const ScenePoint& point : scene.points) {
-    stage.points.push_back({project(point.position, "a point"), point.colour.value_or(kPointColour), point.label});
+    if (!(point.size > 0) || !std::isfinite(point.size)) throw InvalidArgument("a point's size must be positive");
+    stage.points.push_back(
+        {project(point.position, "a point"), point.colour.value_or(kPointColour), point.label, point.size * crowding});
   }
   if (scene.cells) {
     stage.cell_centres = project(scene.cells->centres, "a cell");
     stage.cell_size = project.dim() <= 3 ? static_cast<float>(scene.cells->size) : 0;
+    stage.cell_colour = scene.cells->colour.value_or(kCellColour);
+    stage.cell_label = scene.cells->label;
+    stage.cells_shown = scene.cells->shown;
   }
   if (!stage.flat) {
     if (!(scene.up.norm() > 0) || !scene.up.allFinite()) throw InvalidArgument("the scene's up direction is zero");
-    if (project.dim() == 3) stage.up = scene.up.normalized();
+    if (!scene.towards_viewer.allFinite()) throw InvalidArgument("the direction to look from is not finite");
+    if (project.dim() == 3) {
+      stage.up = scene.up.normalized();
+      stage.towards_viewer = scene.towards_viewer;
+    }
   } else {
     stage.up = Eigen::Vector3d::UnitY();
   }
   find_scalar_range(stage);
   find_radius(stage);
   return stage;
+}
+
+std::vector<Eigen::Matrix3Xf> dashes_of(const Eigen::Matrix3Xf& polyline, double dash, double gap) {
+  std::vector<Eigen::Matrix3Xf> dashes;
+  std::vector<Eigen::Vector3f> piece = {polyline.col(0)};
+  double left = dash;  // until the pen is lifted or set down
+  bool down = true;
+  const auto finish = [&] {
+    if (piece.size() > 1) {
+      dashes.emplace_back(3, static_cast<Index>(piece.size()));
+      for (std::size_t i = 0; i < piece.size(); ++i) dashes.back().col(static_cast<Index>(i)) = piece[i];
+    }
+    piece.clear();
+  };
+  for (Index i = 1; i < polyline.cols(); ++i) {
+    Eigen::Vector3f from = polyline.col(i - 1);
+    const Eigen::Vector3f to = polyline.col(i);
+    for (double rest = (to - from).norm(); rest > 0;) {
+      const double step = std::min(rest, left);
+      from += (to - from) * static_cast<float>(step / rest);
+      if (down) piece.push_back(from);
+      rest -= step;
+      left -= step;
+      if (left > 0) continue;
+      if (down) finish();
+      down = !down;
+      left = down ? dash : gap;
+      if (down) piece.push_back(from);
+    }
+  }
+  finish();
+  return dashes;
 }
 
 double nice_step(double range, int count) {
@@ -276,4 +333,5 @@ std::string format_number(double value, int digits) {
   return {text.data(), end.ptr};
 }
 
-}  // namespace taut::detail
+}  // namespace detail
+}  // namespace taut

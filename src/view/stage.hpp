@@ -30,12 +30,15 @@ struct StagePath {
   Colour colour;
   std::string label;
   double length = 0;
+  double width = 1;  ///< in usual widths
+  bool failed = false;
 };
 
 struct StagePoint {
   Eigen::Vector3f position;
   Colour colour;
   std::string label;
+  double size = 1;  ///< in usual sizes
 };
 
 struct Stage {
@@ -45,15 +48,23 @@ struct Stage {
   std::vector<StagePath> paths;
   std::vector<StagePoint> points;
   Eigen::Matrix3Xf cell_centres;
-  float cell_size = 0;      ///< 0 = draw the centres as points
-  std::string scalar_name;  ///< empty = no mesh is coloured by a scalar
+  float cell_size = 0;  ///< 0 = draw the centres as points
+  Colour cell_colour;
+  std::string cell_label;
+  bool cells_shown = false;  ///< in pictures, and in the page from the start
+  std::string scalar_name;   ///< empty = no mesh is coloured by a scalar
   double scalar_min = 0;
   double scalar_max = 1;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< positions are relative to it: the middle of everything
   double radius = 1;                                 ///< of a ball about the origin round everything
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d towards_viewer = Eigen::Vector3d::Zero();  ///< zero = to be chosen
+  std::string title;
   std::vector<std::string> caption;
 };
+
+/// A path in pieces with gaps between them, as a failed one is drawn; lengths in model units.
+std::vector<Eigen::Matrix3Xf> dashes_of(const Eigen::Matrix3Xf& polyline, double dash, double gap);
 
 /// Throws InvalidArgument for a scene that cannot be drawn.
 Stage make_stage(const Scene& scene);

@@ -11,6 +11,8 @@
 
 #include "taut/io/output_file.hpp"
 #include "view/encode.hpp"
+#include "view/encode_png.hpp"
+#include "view/legend.hpp"
 #include "view/page_text.hpp"
 #include "view/picture.hpp"
 #include "view/shading.hpp"
@@ -139,20 +141,28 @@ void write_meshes(Json& json, const Stage& stage) {
 }
 
 void write_paths(Json& json, const Stage& stage) {
-  constexpr int kDigits = 10;
   json.key("paths").open('[');
   for (const detail::StagePath& path : stage.paths) {
     json.open('{').key("label").string(path.label).key("colour").string(css_colour(path.colour));
-    json.key("length")
-        .string(detail::format_number(path.length, kDigits))
-        .key("positions")
-        .block(path.positions)
-        .close('}');
+    json.key("width").number(path.width).key("failed").boolean(path.failed);
+    json.key("positions").block(path.positions).close('}');
   }
   json.close(']').key("points").open('[');
   for (const detail::StagePoint& point : stage.points) {
     json.open('{').key("label").string(point.label).key("colour").string(css_colour(point.colour));
-    json.key("at").vector(point.position.cast<double>()).close('}');
+    json.key("size").number(point.size).key("at").vector(point.position.cast<double>()).close('}');
+  }
+  json.close(']');
+}
+
+void write_legend(Json& json, const Stage& stage) {
+  json.key("legend").open('[');
+  for (const detail::LegendLine& line : detail::make_legend(stage)) {
+    const char* mark = line.mark == detail::LegendMark::line     ? "line"
+                       : line.mark == detail::LegendMark::dashes ? "dashes"
+                                                                 : "square";
+    json.open('{').key("mark").string(mark).key("colour").string(css_colour(line.colour));
+    json.key("text").string(line.text).key("value").string(line.value).close('}');
   }
   json.close(']');
 }
@@ -174,9 +184,12 @@ std::string scene_json(const Stage& stage, const Eigen::Vector3d& view) {
   write_scalar(json, stage);
   write_meshes(json, stage);
   write_paths(json, stage);
+  write_legend(json, stage);
+  json.key("dash").number(detail::kDash * stage.radius).key("dashGap").number(detail::kDashGap * stage.radius);
   json.key("cells");
   if (stage.cell_centres.cols() > 0) {
-    json.open('{').key("size").number(stage.cell_size).key("centres").block(stage.cell_centres).close('}');
+    json.open('{').key("size").number(stage.cell_size).key("colour").string(css_colour(stage.cell_colour));
+    json.key("shown").boolean(stage.cells_shown).key("centres").block(stage.cell_centres).close('}');
   } else {
     json.null();
   }
@@ -206,7 +219,7 @@ std::string fill_in(std::string_view text, const Values& values) {
 std::string to_html(const Scene& scene) {
   const Stage stage = detail::make_stage(scene);
   PictureOptions still{.width = 900, .height = 600};
-  still.towards_viewer = detail::view_direction(stage, still);
+  still.towards_viewer = detail::viewer_of(stage, still);
   std::string facts;
   for (const SceneFact& fact : scene.facts) {
     facts.append("<dt>")

@@ -109,6 +109,22 @@ TEST(WriteHtml, CellsFlatScenesAndManyDimensionsArePartOfIt) {
   EXPECT_EQ(decode<float>(data["paths"][0]["positions"]).size(), 12U);
 }
 
+TEST(WriteHtml, OpensWithTheViewAndTheCellsAskedFor) {
+  Scene scene = test::ball_scene(12);
+  scene.towards_viewer = view_direction(20, 30);
+  scene.cells = SceneCells{.centres = Points::Random(3, 5), .size = 0.25};
+  nlohmann::json data = scene_of(to_html(scene));
+  const std::vector<double> view = data["view"];
+  for (Index i = 0; i < 3; ++i) EXPECT_NEAR(view[static_cast<std::size_t>(i)], scene.towards_viewer(i), 1e-12);
+  EXPECT_TRUE(data["cells"]["shown"]);
+  EXPECT_EQ(data["legend"].size(), 2U);
+  EXPECT_EQ(data["legend"][1]["mark"], "square");
+  scene.cells->shown = false;
+  data = scene_of(to_html(scene));
+  EXPECT_FALSE(data["cells"]["shown"]);
+  EXPECT_EQ(data["legend"].size(), 1U);
+}
+
 TEST(WriteHtml, ScriptIsValidJavaScript) {
   if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no node here";
   const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "taut_page.js";

@@ -89,7 +89,60 @@ TEST(WriteSvg, HasAColourBarForScalars) {
 TEST(WriteSvg, ManyPathsAreSummedUpInTheLegend) {
   Scene scene = test::ball_scene();
   while (scene.paths.size() < 20) scene.paths.push_back(scene.paths.front());
-  EXPECT_NE(to_svg(scene, kFront).find("20 paths, lengths 1.57"), std::string::npos);
+  EXPECT_NE(to_svg(scene, {.width = 800, .height = 500}).find("20 paths, lengths 1.57"), std::string::npos);
+}
+
+TEST(WriteSvg, PathsOfOneSourceShareAColourAndALegendLine) {
+  Scene scene = test::ball_scene();
+  scene.paths.clear();
+  for (int source = 0; source < 3; ++source) {
+    for (int k = 0; k < 4; ++k) {
+      ScenePath path{.label = "from @" + std::to_string(source),
+                     .colour = path_colour(static_cast<std::size_t>(source))};
+      path.points.resize(3, 20);
+      for (Index i = 0; i < 20; ++i) {
+        const double a = 0.5 * source + 0.03 * static_cast<double>(i);
+        path.points.col(i) << std::cos(0.2 * k) * std::cos(a), std::cos(0.2 * k) * std::sin(a), std::sin(0.2 * k);
+      }
+      scene.paths.push_back(path);
+    }
+  }
+  const std::string svg = to_svg(scene, from({1, 1, 1}));
+  EXPECT_TRUE(is_well_formed(svg));
+  // One stroke a path in its source's colour, all of them in sight, and one for the legend.
+  for (const char* colour : {"#e4482b", "#1f77c9", "#f0a202"}) {
+    EXPECT_EQ(occurrences(svg, std::string("stroke=\"") + colour + "\""), 4 + 1) << colour;
+  }
+  EXPECT_EQ(occurrences(svg, "4 paths, lengths"), 3);
+}
+
+TEST(WriteSvg, LegendOfVeryManyKindsOfPathsStaysShort) {
+  Scene scene = test::ball_scene();
+  const ScenePath path = scene.paths.front();
+  for (int k = 0; k < 30; ++k) {
+    scene.paths.push_back(path);
+    scene.paths.back().label = "way " + std::to_string(k);
+  }
+  const std::string svg = to_svg(scene, kFront);
+  EXPECT_EQ(occurrences(svg, ">way "), 6);
+  EXPECT_NE(svg.find("others, 24 paths, lengths"), std::string::npos);
+}
+
+TEST(WriteSvg, FailedPathIsDashedInAmberAndNamed) {
+  Scene scene = test::ball_scene();
+  scene.paths[0].failed = true;
+  scene.paths[0].colour.reset();
+  scene.paths[0].label = "not converged";
+  const std::string svg = to_svg(scene, from({1, 1, 0}));
+  EXPECT_EQ(occurrences(svg, "stroke=\"#c77700\""), 2);
+  EXPECT_EQ(occurrences(svg, "stroke-dasharray"), 2);
+  EXPECT_EQ(occurrences(svg, ">not converged, length"), 1);
+}
+
+TEST(WriteSvg, NamesOfPointsInOnePlaceAreJoined) {
+  Scene scene = test::ball_scene();
+  scene.points[1].position = scene.points[0].position;
+  EXPECT_EQ(occurrences(to_svg(scene, kFront), ">from, to<"), 1);
 }
 
 TEST(WriteSvg, FlatScenesAreVectorsOnly) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -22,7 +23,11 @@ struct Colour {
     return {static_cast<float>(rgb >> 16 & 255) / 255, static_cast<float>(rgb >> 8 & 255) / 255,
             static_cast<float>(rgb & 255) / 255};
   }
+  friend constexpr bool operator==(const Colour&, const Colour&) = default;
 };
+
+/// The colours that paths take in turn, six of them: for those that share one on purpose.
+[[nodiscard]] Colour path_colour(std::size_t index);
 
 /// A surface to look at (scenes in space only).
 struct SceneMesh {
@@ -42,25 +47,33 @@ struct SceneLines {
   std::optional<Colour> colour = std::nullopt;
 };
 
-/// A curve drawn thick: a geodesic.
+/// A curve drawn thick: a geodesic. Paths of the same label and colour share a line of the legend.
 struct ScenePath {
-  Points points = {};                           ///< d x n, n >= 2, in order
-  std::string label = {};                       ///< for the legend; may be empty
-  std::optional<Colour> colour = std::nullopt;  ///< unset = chosen, another for each path
+  Points points = {};      ///< d x n, n >= 2, in order
+  std::string label = {};  ///< for the legend; may be empty
+  /// Unset = chosen: another for each path, amber for one that failed.
+  std::optional<Colour> colour = std::nullopt;
   /// Model units, for the legend; NaN = the length of the polyline.
   double length = std::numeric_limits<double>::quiet_NaN();
+  double width = 1;     ///< in usual widths; many paths are drawn thinner by themselves
+  bool failed = false;  ///< not the path that was asked for: dashed
 };
 
 struct ScenePoint {
   Vector position;         ///< d
   std::string label = {};  ///< drawn beside it; may be empty
   std::optional<Colour> colour = std::nullopt;
+  double size = 1;  ///< in usual sizes
 };
 
-/// Equal cubes (squares for d = 2).
+/// Equal cubes on one lattice (squares for d = 2): the cells around a surface, drawn as a translucent skin.
 struct SceneCells {
-  Points centres;   ///< d x n
-  double size = 0;  ///< edge length, model units
+  Points centres;                               ///< d x n
+  double size = 0;                              ///< edge length, model units
+  std::string label = "cells";                  ///< for the legend
+  std::optional<Colour> colour = std::nullopt;  ///< unset = green
+  /// False: pictures leave them out, and the page shows them when asked.
+  bool shown = true;
 };
 
 /// One line of the panel of facts: "length", "1.570796327".
@@ -82,6 +95,16 @@ struct Scene {
   std::vector<SceneFact> facts;
   std::vector<std::string> caption;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  ///< which way is up in the picture (d = 3)
+  /// From where to look, as a direction from the scene to the viewer (`view_direction` makes one of angles); zero =
+  /// chosen so that the paths are seen best, from the side that the surface's normals face.
+  Eigen::Vector3d towards_viewer = Eigen::Vector3d::Zero();
 };
+
+/// The direction to look from at an azimuth and an elevation, degrees. The azimuth is counted from the x axis (from the
+/// y axis where x points up), counter-clockwise seen from above; the elevation from the horizon upwards, -90..90. So
+/// with z up (0, 0) looks from +x, (90, 0) from +y, (0, 90) from above. Throws InvalidArgument for angles out of range
+/// or not finite, and for `up` = 0.
+[[nodiscard]] Eigen::Vector3d view_direction(double azimuth, double elevation,
+                                             const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 
 }  // namespace taut

@@ -9,17 +9,20 @@ namespace taut {
 struct PictureOptions {
   int width = 1200;  ///< pixels, 16..16384
   int height = 800;  ///< pixels, 16..16384
-  /// From where to look, as a direction from the scene to the viewer; zero = chosen so that the paths are seen best.
+  /// From where to look, as in Scene::towards_viewer, which it overrides; zero = as the scene says.
   Eigen::Vector3d towards_viewer = Eigen::Vector3d::Zero();
-  int threads = 0;  ///< 0 = all cores; changes nothing but the time
+  bool text = true;      ///< title, legend, colour bar, labels and caption; false: the scene alone fills the picture
+  bool isolines = true;  ///< lines of equal value on a surface coloured by a scalar
+  int threads = 0;       ///< 0 = all cores; changes nothing but the time
 };
 
-/// The scene as a PNG file's bytes: shaded surface, paths with their hidden parts showing through faintly, end points;
-/// no text. White background. Deterministic. Throws InvalidArgument as `to_html` does.
+/// The scene as a PNG file's bytes: shaded surface, cells, paths with their hidden parts showing through faintly, end
+/// points, and the text around them. White background. Deterministic for one version of libpng and zlib. Throws
+/// InvalidArgument as `to_html` does.
 [[nodiscard]] std::string to_png(const Scene& scene, const PictureOptions& options = {});
 
-/// The scene as an SVG document: the shaded surface as an embedded image, and over it as vectors the paths (dashed
-/// where they are hidden), end points, labels, legend, colour bar, title and caption.
+/// The scene as an SVG document: the shaded surface and the cells as an embedded image, and over it as vectors the
+/// paths (dashed where they are hidden), end points, labels, legend, colour bar, title and caption.
 [[nodiscard]] std::string to_svg(const Scene& scene, const PictureOptions& options = {});
 
 /// Write those files. They appear whole or not at all. Throw IoError too.

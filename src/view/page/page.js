@@ -57,7 +57,10 @@
   function everyPosition(visit) {
     const lists = [...scene.meshes, ...scene.lines, ...scene.paths].map((part) => part.positions);
     lists.push(Float32Array.from(scene.points.flatMap((p) => p.at)));
-    if (scene.cells && lists.every((list) => list.length === 0)) lists.push(scene.cells.centres);
+    if (scene.cells && (scene.cells.shown || lists.every((list) => list.length === 0))) {
+      const half = scene.cells.size / 2;
+      lists.push(scene.cells.centres.map((x) => x - half), scene.cells.centres.map((x) => x + half));
+    }
     for (const list of lists) {
       const step = 3 * Math.max(1, Math.floor(list.length / 300000));
       for (let i = 0; i + 2 < list.length; i += step) visit(list[i], list[i + 1], list[i + 2]);
@@ -161,6 +164,31 @@
 
   // ---- shapes made here ----
 
+  // A path in pieces with gaps between them.
+  function dashesOf(points) {
+    const dashes = [];
+    let piece = [points[0]];
+    let left = scene.dash;
+    let down = true;
+    for (let i = 1; i < points.length; ++i) {
+      let from = points[i - 1];
+      for (let rest = norm(sub(points[i], from)); rest > 0;) {
+        const step = Math.min(rest, left);
+        from = add(from, times(sub(points[i], from), step / rest));
+        if (down) piece.push(from);
+        rest -= step;
+        left -= step;
+        if (left > 0) continue;
+        if (down) dashes.push(piece);
+        down = !down;
+        left = down ? scene.dash : scene.dashGap;
+        piece = [from];
+      }
+    }
+    if (down && piece.length > 1) dashes.push(piece);
+    return dashes;
+  }
+
   // Round tubes about the paths and balls at the points. A vertex is a centre, a direction, a colour and a thickness:
   // the shader moves it out, so that a tube stays as thick in pixels at any zoom.
   function makeTubes() {
@@ -180,7 +208,7 @@
         }
       }
     }
-    function addTube(points, colour) {
+    function addTube(points, colour, thickness) {
       const around = circle(12);
       const first = count;
       let tangent = unit(sub(points[1], points[0]));
@@ -188,7 +216,7 @@
       const ring = (centre, angle) => {
         const other = cross(tangent, side);
         const out = ([c, s]) => add(times(side, c), times(other, s));
-        addRing(centre, around.map((w) => add(times(tangent, Math.sin(angle)), times(out(w), Math.cos(angle)))), colour, 1);
+        addRing(centre, around.map((w) => add(times(tangent, Math.sin(angle)), times(out(w), Math.cos(angle)))), colour, thickness);
       };
       const cap = [1, 0.75, 0.5, 0.25].map((part) => (part * Math.PI) / 2);
       for (const angle of cap) ring(points[0], -angle);
@@ -204,12 +232,12 @@
       for (const angle of cap.reverse()) ring(points[points.length - 1], angle);
       joinRings(first, around.length);
     }
-    function addBall(centre, colour) {
+    function addBall(centre, colour, thickness) {
       const around = circle(24);
       const first = count;
       for (let k = 0; k <= 12; ++k) {
         const [c, s] = [Math.cos((Math.PI * k) / 12), Math.sin((Math.PI * k) / 12)];
-        addRing(centre, around.map(([x, y]) => [s * x, s * y, -c]), colour, 2);
+        addRing(centre, around.map(([x, y]) => [s * x, s * y, -c]), colour, thickness);
       }
       joinRings(first, around.length);
     }
@@ -219,9 +247,10 @@
         const x = Array.from(path.positions.subarray(i, i + 3));
         if (points.length === 0 || norm(sub(x, points[points.length - 1])) > 1e-6 * scene.radius) points.push(x);
       }
-      if (points.length > 1) addTube(points, rgb(path.colour));
+      if (points.length < 2) continue;
+      for (const piece of path.failed ? dashesOf(points) : [points]) addTube(piece, rgb(path.colour), path.width);
     }
-    for (const point of scene.points) addBall(point.at, rgb(point.colour));
+    for (const point of scene.points) addBall(point.at, rgb(point.colour), 2 * point.size);
     return { data: new Float32Array(data), index: new Uint32Array(index) };
   }
 
@@ -241,24 +270,39 @@
     return new Uint32Array(edges);
   }
 
-  // The 12 edges of a cube about the origin, or the 4 of a square.
-  function cubeEdges() {
-    const ends = [];
-    for (let a = 0; a < (scene.flat ? 2 : 3); ++a) {
-      for (const u of [-0.5, 0.5]) {
-        for (const v of scene.flat ? [0] : [-0.5, 0.5]) {
-          for (const along of [-0.5, 0.5]) {
-            const corner = [0, 0, 0];
-            const others = [0, 1, 2].filter((axis) => axis !== a);
-            corner[a] = along;
-            corner[others[0]] = u;
-            corner[others[1]] = v;
-            ends.push(...corner);
-          }
+  // The outside of the cells: the faces that no other cell shares, as triangles, and their edges.
+  function cellSkin({ centres, size }) {
+    const place = (i) => [0, 1, 2].map((a) => Math.round((centres[i + a] - centres[a]) / size));
+    const taken = new Set();
+    for (let i = 0; i < centres.length; i += 3) taken.add(place(i).join());
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]];
+    const [positions, triangles, edges] = [[], [], []];
+    const addSide = (i, axis, sign) => {
+      const first = positions.length / 3;
+      for (const [u, v] of corners) {
+        const corner = [centres[i], centres[i + 1], centres[i + 2]];
+        if (!scene.flat) corner[axis] += (sign * size) / 2;
+        corner[(axis + 1) % 3] += (u * size) / 2;
+        corner[(axis + 2) % 3] += (v * size) / 2;
+        positions.push(...corner);
+      }
+      triangles.push(first, first + 1, first + 2, first, first + 2, first + 3);
+      for (let k = 0; k < 4; ++k) edges.push(first + k, first + ((k + 1) % 4));
+    };
+    for (let i = 0; i < centres.length; i += 3) {
+      if (scene.flat) {
+        addSide(i, 2, 1);
+        continue;
+      }
+      for (const axis of [0, 1, 2]) {
+        for (const sign of [-1, 1]) {
+          const beyond = place(i);
+          beyond[axis] += sign;
+          if (!taken.has(beyond.join())) addSide(i, axis, sign);
         }
       }
     }
-    return new Float32Array(ends);
+    return { positions: new Float32Array(positions), triangles: new Uint32Array(triangles), edges: new Uint32Array(edges) };
   }
 
   // ---- drawing ----
@@ -340,7 +384,7 @@
         gl_Position = projection * vec4(p, 1.0);
         // Only its depth is lifted towards the viewer.
         vec3 towards = flatScene ? vec3(0.0, 0.0, 1.0) : normalize(-p);
-        float most = flatScene ? lift : min(lift + (width - 1.0) * r, 0.5 * length(p));
+        float most = flatScene ? lift : min(lift + max(width - 1.0, 0.0) * r, 0.5 * length(p));
         vec4 nearer = projection * vec4(p + most * towards, 1.0);
         gl_Position.z = nearer.z / nearer.w * gl_Position.w;
       }`, `
@@ -355,11 +399,9 @@
       }`],
     wire: [`
       uniform mat4 view, projection;
-      uniform float size;
       layout(location = 0) in vec3 position;
-      layout(location = 1) in vec3 offset;
       void main() {
-        gl_Position = projection * view * vec4(position + size * offset, 1.0);
+        gl_Position = projection * view * vec4(position, 1.0);
         gl_PointSize = 2.0;
       }`, `
       uniform vec4 ink;
@@ -370,7 +412,7 @@
   let gl = null;
   let programs = {};
   let parts = {};
-  const shown = { surface: true, wire: false, paths: true, cells: false, colours: true, isolines: true, labels: true };
+  const shown = { surface: true, wire: false, paths: true, cells: Boolean(scene.cells && scene.cells.shown), colours: true, isolines: true, labels: true };
 
   function compile([vertex, fragment]) {
     const program = gl.createProgram();
@@ -402,16 +444,15 @@
     return result;
   }
 
-  // attributes: [location, numbers or a buffer, components, { stride, offset, divisor }]
+  // attributes: [location, numbers or a buffer, components, { stride, offset }]
   function vertexArray(attributes, index) {
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
-    for (const [location, data, components, { stride = 0, offset = 0, divisor = 0 } = {}] of attributes) {
+    for (const [location, data, components, { stride = 0, offset = 0 } = {}] of attributes) {
       if (data instanceof WebGLBuffer) gl.bindBuffer(gl.ARRAY_BUFFER, data);
       else buffer(gl.ARRAY_BUFFER, data);
       gl.enableVertexAttribArray(location);
       gl.vertexAttribPointer(location, components, gl.FLOAT, false, stride, offset);
-      gl.vertexAttribDivisor(location, divisor);
     }
     if (index) buffer(gl.ELEMENT_ARRAY_BUFFER, index);
     gl.bindVertexArray(null);
@@ -475,7 +516,7 @@
   function drawWire(common, dark) {
     const overSurface = dark ? [0.04, 0.06, 0.09, 0.5] : [0.1, 0.15, 0.2, 0.38];
     const alone = dark ? [0.8, 0.86, 0.92, 0.4] : [0.1, 0.15, 0.2, 0.45];
-    use("wire", { ...common, size: 0, ink: shown.surface ? overSurface : alone });
+    use("wire", { ...common, ink: shown.surface ? overSurface : alone });
     for (const part of parts.meshes) {
       if (!part.edges) {
         const edges = meshEdges(part.mesh.faces, part.mesh.positions.length / 3);
@@ -501,21 +542,43 @@
     gl.disable(gl.CULL_FACE);
   }
 
+  // A translucent skin between the surface and the paths; of cells without a size, only their centres.
   function drawCells(common, dark) {
-    const n = scene.cells.centres.length / 3;
-    const boxes = scene.cells.size > 0 && n <= 200000;
+    const colour = rgb(scene.cells.colour);
     if (!parts.cells) {
-      const edges = cubeEdges();
-      const attributes = [[0, scene.cells.centres, 3, { divisor: boxes ? 1 : 0 }]];
-      if (boxes) attributes.push([1, edges, 3]);
-      parts.cells = { array: vertexArray(attributes), count: edges.length / 3 };
+      const boxes = scene.cells.size > 0;
+      const skin = boxes ? cellSkin(scene.cells) : { positions: scene.cells.centres, triangles: [], edges: [] };
+      const array = (index) => vertexArray([[0, skin.positions, 3]], boxes ? index : null);
+      parts.cells = {
+        boxes, count: skin.positions.length / 3, points: array(skin.edges),
+        faces: { array: array(skin.triangles), count: skin.triangles.length },
+        edges: { array: array(skin.edges), count: skin.edges.length },
+      };
     }
-    gl.depthMask(false);
-    use("wire", { ...common, size: boxes ? scene.cells.size : 0, ink: dark ? [0.55, 0.75, 0.95, 0.35] : [0.1, 0.35, 0.6, 0.3] });
-    gl.bindVertexArray(parts.cells.array);
-    if (boxes) gl.drawArraysInstanced(gl.LINES, 0, parts.cells.count, n);
-    else gl.drawArrays(gl.POINTS, 0, n);
-    gl.depthMask(true);
+    const edge = [...colour.map((c) => (dark ? 0.4 + 0.6 * c : 0.7 * c)), 0.75];
+    if (!parts.cells.boxes) {
+      use("wire", { ...common, ink: edge });
+      gl.bindVertexArray(parts.cells.points);
+      gl.drawArrays(gl.POINTS, 0, parts.cells.count);
+      return;
+    }
+    // Only the nearest layer of it is drawn: first its depth, then its colours.
+    gl.enable(gl.POLYGON_OFFSET_FILL);
+    gl.polygonOffset(1, 1);
+    gl.colorMask(false, false, false, false);
+    use("wire", { ...common, ink: edge });
+    drawElements(gl.TRIANGLES, parts.cells.faces);
+    gl.colorMask(true, true, true, true);
+    use("wire", { ...common, ink: [...colour, 0.28] });
+    drawElements(gl.TRIANGLES, parts.cells.faces);
+    gl.disable(gl.POLYGON_OFFSET_FILL);
+    use("wire", { ...common, ink: edge });
+    drawElements(gl.LINES, parts.cells.edges);
+    // No cell hides a path: forget their depth.
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    gl.colorMask(false, false, false, false);
+    if (shown.surface) drawSurface(common);
+    gl.colorMask(true, true, true, true);
   }
 
   function draw() {
@@ -535,7 +598,7 @@
     if (shown.surface) drawSurface(common);
     if (shown.wire) drawWire(common, dark);
     for (const part of parts.lines) {
-      use("wire", { ...common, size: 0, ink: [...part.colour.map((c) => (dark ? 0.5 + 0.5 * c : c)), 1] });
+      use("wire", { ...common, ink: [...part.colour.map((c) => (dark ? 0.5 + 0.5 * c : c)), 1] });
       drawElements(gl.LINES, part);
     }
     if (shown.cells && scene.cells) drawCells(common, dark);
@@ -582,11 +645,12 @@
 
   function fillPanel() {
     const legend = document.getElementById("legend");
-    if (scene.paths.length > 8) element("em", `${scene.paths.length} paths`, legend);
-    for (const path of scene.paths) {
-      element("i", "", legend).style.background = path.colour;
-      element("span", path.label || "path", legend);
-      element("b", path.length, legend);
+    for (const line of scene.legend) {
+      const mark = element("i", "", legend);
+      mark.className = line.mark;
+      mark.style.setProperty("--mark", line.colour);
+      const text = element("span", line.text, legend);
+      element("b", line.value, text);
     }
     if (!scene.scalar) return;
     const { name, min, max, ticks } = scene.scalar;
