@@ -6,6 +6,7 @@
 
 #include "query/cell_levels.hpp"
 #include "taut/core/error.hpp"
+#include "taut/query/surface_mesh.hpp"
 
 namespace taut {
 
@@ -39,7 +40,8 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   for (Index i = 0; i < cells.num_cells(); ++i) result.points.col(i) = cells.point(i);
   if (surface.dim() != 3 || surface.codim() != 1) return result;
 
-  result.mesh = mesh_surface(surface, cells.grid(), {}, context);
+  result.mesh =
+      display_mesh(surface, {.cell_at_most = options.cell, .grid = options.grid, .near = on_surface}, context);
   VertexScalar distance{"distance", distance_at(surface, cells, field, result.mesh.vertices)};
   for (double& u : distance.values) {
     if (!std::isfinite(u)) u = std::numeric_limits<double>::quiet_NaN();

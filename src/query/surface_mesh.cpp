@@ -1,26 +1,99 @@
 #include "taut/query/surface_mesh.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "query/cell_levels.hpp"
+#include "taut/cells/grow.hpp"
+#include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
+namespace {
+
+/// A dense fit takes 3 to 10 us a point, and a cell of a display mesh some five points: a second for so many.
+constexpr Index kMostFittedCells = 20'000;
+/// A formula takes a tenth of that. More triangles make a page heavy (40 bytes each), and no picture better.
+constexpr Index kMostCells = 150'000;
+/// Vertices of a mesh that is not exact lie within this of the surface, in cells.
+constexpr double kRough = 2e-3;
+
+/// The size at which about `most` cells hold the samples' surface. Counted at a size at which nearly every crossed cell
+/// holds a sample; the number goes like h^-2.
+double size_for_budget(const Points& samples, Index most) {
+  constexpr double kCountedPerSide = 16;
+  constexpr double kCrossedBesideSamples = 1.5;
+  const Box box{samples.rowwise().minCoeff(), samples.rowwise().maxCoeff()};
+  const double counted = box.extent().maxCoeff() / kCountedPerSide;
+  CellGrid occupied(box.lower, counted);
+  std::vector<std::int32_t> cell(static_cast<std::size_t>(samples.rows()));
+  for (const auto& x : samples.colwise()) {
+    occupied.cell_of(x, cell);
+    occupied.insert(cell);
+  }
+  const double crossed = kCrossedBesideSamples * static_cast<double>(occupied.num_cells());
+  return counted * std::sqrt(crossed / static_cast<double>(most));
+}
+
+/// The cells to look at: those for marching would be too coarse.
+CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
+  const Points near = options.near.rows() == surface.dim() ? options.near : Points(surface.dim(), 0);
+  // Cells grown lazily from two ends are for paths; a picture wants all of them.
+  const bool fitted = surface.samples() != nullptr && surface.samples()->size() > 0;
+  const bool grown = fitted && options.grid != GridMethod::subdivide;
+  detail::CellLevels levels(surface, grown ? GridMethod::grow : GridMethod::subdivide, options.cell, context);
+  levels.prepare(near);
+  const double finest = options.cell_at_most > 0 ? options.cell_at_most : std::numeric_limits<double>::infinity();
+  if (grown) {
+    const Points& samples = surface.samples()->points;
+    const double chosen = std::max(levels.size(1), size_for_budget(samples, kMostFittedCells));
+    return grow(surface, samples, options.cell > 0 ? options.cell : std::min(chosen, finest), context);
+  }
+  const auto cells_of = [&](double h) {
+    return subdivide(surface, {.size = h, .box = levels.box(), .origin = {}}, context);
+  };
+  if (options.cell > 0) return cells_of(options.cell);
+  const std::shared_ptr<SurfaceCells> coarse = levels.cells(0, near);  // as fine as the surface bends
+  const int level = 4 * coarse->num_cells() > kMostCells ? 0 : 1;
+  if (level == 0 && levels.size(0) <= finest) return coarse->grid();
+  return cells_of(std::min(levels.size(level), finest));
+}
+
+MeshOptions mesh_options(const DisplayMeshOptions& options, const CellGrid& grid) {
+  return {.tolerance = options.exact ? 0 : kRough * grid.size()};
+}
+
+}  // namespace
 
 SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
   if (surface.dim() != 3 || surface.codim() != 1) {
     throw InvalidArgument("only surfaces in 3 dimensions with one equation can be meshed, not " +
                           std::to_string(surface.dim()) + " dimensions with " + std::to_string(surface.codim()));
   }
-  detail::CellLevels levels(surface, options.grid, options.cell, context);
-  levels.prepare(Points(surface.dim(), 0));
-  // Cells chosen for marching are too coarse to look at.
-  const int level = options.cell > 0 ? 0 : 1;
-  const SurfaceMesh mesh = mesh_surface(surface, levels.cells(level, Points(surface.dim(), 0))->grid(), {}, context);
+  const CellGrid grid = display_grid(surface, options, context);
+  SurfaceMesh mesh = mesh_surface(surface, grid, mesh_options(options, grid), context);
   if (mesh.faces.cols() == 0) {
     throw EmptySurface("the surface has no piece that these cells can show; try smaller ones");
   }
   return mesh;
+}
+
+CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
+  if (surface.dim() != 2 || surface.codim() != 1) {
+    throw InvalidArgument("only curves in the plane with one equation can be drawn, not " +
+                          std::to_string(surface.dim()) + " dimensions with " + std::to_string(surface.codim()));
+  }
+  const CellGrid grid = display_grid(surface, options, context);
+  CurveMesh curve = mesh_curve(surface, grid, mesh_options(options, grid), context);
+  if (curve.segments.cols() == 0) {
+    throw EmptySurface("the curve has no piece that these cells can show; try smaller ones");
+  }
+  return curve;
 }
 
 Points display_cells(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {

@@ -16,7 +16,8 @@ struct FieldOptions {
 
 /// Distances from a source to everywhere, for display and for a quick answer: as exact as the cells (docs/march.md).
 struct FieldResult {
-  /// d = 3: the surface with a vertex scalar "distance" (model units, NaN where no path leads). Empty otherwise.
+  /// d = 3: the display mesh (`display_mesh`, its cells no larger than FieldOptions::cell) with a vertex scalar
+  /// "distance" (model units, NaN where no path leads). Empty otherwise.
   SurfaceMesh mesh;
   Points points;    ///< d x n: the projected cells
   Vector distance;  ///< n: distance at each, infinity where no path leads

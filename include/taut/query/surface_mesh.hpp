@@ -6,14 +6,25 @@
 namespace taut {
 
 struct DisplayMeshOptions {
-  double cell = 0;  ///< grid cell size h, model units; 0 = chosen
+  double cell = 0;  ///< grid cell size h, model units; 0 = chosen: as fine as the surface needs, within a budget
+  double cell_at_most = 0;  ///< the chosen size is no larger than this; 0 = whatever is chosen
   GridMethod grid = GridMethod::automatic;
+  /// True: vertices lie on the surface to rounding. False: within 1/500 of a cell, which no picture shows and which
+  /// saves half of the work.
+  bool exact = true;
+  /// d x n: places that must be in the picture; they decide which part of a surface without end is shown.
+  Points near = {};
 };
 
-/// The surface as triangles, its box and cell size chosen: `mesh_surface` for people in a hurry. Throws as it does, and
-/// EmptySurface when there is nothing to mesh.
+/// The surface as triangles, its box and cell size chosen: `mesh_surface` for people in a hurry. Cells are half as
+/// large as those that paths are marched on, or coarser where there would be more than 20,000 of a fitted surface
+/// (150,000 of another one). Throws as `mesh_surface` does, and EmptySurface when there is nothing to mesh.
 [[nodiscard]] SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options = {},
                                        const Context& context = {});
+
+/// The same for a curve in the plane (d = 2, k = 1): `mesh_curve`.
+[[nodiscard]] CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& options = {},
+                                      const Context& context = {});
 
 /// Centres (d x n) of the cells that the surface goes through, for pictures; d at most 6. Throws as `PathSolver` does.
 [[nodiscard]] Points display_cells(const Surface& surface, const DisplayMeshOptions& options = {},
