@@ -107,10 +107,11 @@ ExitCode run_one(const ExpArguments& arguments, const Surface& surface, const Co
   drawn.points = result.points;
   return deliver_path(arguments.delivery,
                       {.surface = surface,
-                       .paths = {&drawn},
+                       .sources = {{"geodesic", {&drawn}}},
                        .json = ray_json(surface, result, *arguments.length, seconds),
                        .facts = ray_facts(result),
-                       .title = arguments.surface.surface},
+                       .title = picture_title(arguments.surface.surface),
+                       .end_name = "end"},
                       context);
 }
 

@@ -111,7 +111,7 @@ ExitCode run(const FieldArguments& arguments) {
                                      .mesh = field.mesh,
                                      .marks = sources,
                                      .facts = facts,
-                                     .title = "Distances on " + arguments.surface.surface});
+                                     .title = "Distances on " + picture_title(arguments.surface.surface)});
   std::cout << facts_text(facts);
   return kDone;
 }

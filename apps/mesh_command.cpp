@@ -32,8 +32,11 @@ ExitCode run(const MeshArguments& arguments) {
   clear_progress();
   const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
                                         {"triangles", grouped(mesh.faces.cols())}};
-  write_mesh_files(arguments.files,
-                   {.surface = surface, .mesh = mesh, .marks = {}, .facts = facts, .title = arguments.surface.surface});
+  write_mesh_files(arguments.files, {.surface = surface,
+                                     .mesh = mesh,
+                                     .marks = {},
+                                     .facts = facts,
+                                     .title = picture_title(arguments.surface.surface)});
   std::cout << facts_text(facts);
   return kDone;
 }

@@ -8,9 +8,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <utility>
 
+#include "load_surface.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
@@ -22,10 +26,15 @@
 namespace taut::app {
 namespace {
 
-constexpr std::array kPathOutputs = {".json", ".csv", ".npy", ".ply", ".obj", ".vtp", ".html", ".svg", ".png"};
+constexpr const char* kJson = ".json";
+constexpr std::array kPathOutputs = {kJson, ".csv", ".npy", ".ply", ".obj", ".vtp", ".html", ".svg", ".png"};
 constexpr std::array kMeshOutputs = {".ply", ".obj", ".off", ".stl", ".vtp", ".html", ".svg", ".png"};
-/// Cells drawn around a path: more than these only hide the surface.
-constexpr Index kMostCellsDrawn = 50000;
+/// Ends of so many paths are marked by dots; of more they only clutter the picture.
+constexpr std::size_t kMostEndsMarked = 200;
+constexpr double kDotSize = 0.55;
+constexpr Colour kMarchedColour = Colour::hex(0xD7301F);    // the paper's figures: red on the cells,
+constexpr Colour kCorrectedColour = Colour::hex(0x1F5FBF);  // blue on the surface
+constexpr std::size_t kLongestTitle = 120;
 
 std::string extension_of(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -49,42 +58,169 @@ std::string known_outputs(OutputKind kind) {
                                   : fmt::format("{}", fmt::join(kMeshOutputs, " "));
 }
 
-/// The surface, the cells that were walked and the paths. A surface that cannot be meshed is left out.
-Scene path_scene(const PathOutput& output, const Eigen::Vector3d& up, const Context& context) {
-  Scene scene;
-  scene.title = output.title;
-  scene.facts = output.facts;
-  scene.up = up;
-  const bool single = output.paths.size() == 1;
-  for (const PathResult* path : output.paths) {
-    scene.paths.push_back({.points = path->points, .label = "geodesic", .length = path->length});
-    if (single) {
-      scene.points.push_back({.position = path->from, .label = "from"});
-      scene.points.push_back({.position = path->to, .label = "to"});
+/// Builds what a picture of paths shows.
+class PathScene {
+ public:
+  PathScene(const PathOutput& output, const FileArguments& files) : output_(output) {
+    scene_.title = output.title;
+    scene_.facts = output.facts;
+    scene_.up = files.up;
+    scene_.towards_viewer = files.towards_viewer();
+    for (const SourcePaths& source : output.sources) num_paths_ += source.paths.size();
+  }
+
+  Scene build(const Context& context) {
+    add_surface(context);
+    for (std::size_t s = 0; s < output_.sources.size(); ++s) {
+      for (const PathResult* path : output_.sources[s].paths) add_path(*path, s);
+    }
+    add_ends();
+    if (output_.show.cells) add_cells();
+    scene_.points.insert(scene_.points.end(), output_.marks.begin(), output_.marks.end());
+    return std::move(scene_);
+  }
+
+ private:
+  /// A surface that cannot be meshed is left out.
+  void add_surface(const Context& context) {
+    if (output_.show.field) {
+      FieldResult field = marched_field(output_.surface, source_points(), output_.field, context);
+      const std::string distance = field.mesh.scalars.front().name;
+      scene_.meshes.push_back({.mesh = std::move(field.mesh), .coloured_by = distance});
+    } else if (output_.surface.dim() == 3 && output_.surface.codim() == 1) {
+      scene_.meshes.push_back({.mesh = display_mesh(output_.surface, {.exact = false, .near = ends()}, context)});
+    } else if (output_.surface.dim() == 2 && output_.surface.codim() == 1) {
+      const CurveMesh curve = display_curve(output_.surface, {.exact = false, .near = ends()}, context);
+      scene_.lines.push_back({.vertices = curve.vertices, .segments = curve.segments, .name = "F = 0"});
     }
   }
-  if (!single && !output.paths.empty())
-    scene.points.push_back({.position = output.paths.front()->from, .label = "from"});
-  if (output.surface.dim() == 3 && output.surface.codim() == 1) {
-    SurfaceMesh mesh = display_mesh(output.surface, {}, context);
-    scene.meshes.push_back({.mesh = std::move(mesh)});
+
+  void add_path(const PathResult& path, std::size_t source) {
+    const bool failed = path.status != Status::ok;
+    const bool uncorrected = path.points.cols() == path.grid_path.cols() && path.points == path.grid_path;
+    const bool marched = output_.show.marched && path.grid_path.cols() > 1 && !uncorrected;
+    const bool single = num_paths_ == 1;
+    if (marched) {
+      scene_.paths.push_back({.points = path.grid_path,
+                              .label = single ? "marched path" : "marched paths",
+                              .colour = single ? kMarchedColour : Colour::hex(0x5B6B7C),
+                              .width = single ? 0.8 : 0.5});
+    }
+    ScenePath drawn{
+        .points = path.points, .label = output_.sources[source].name, .length = path.length, .failed = failed};
+    if (!failed && marched && single) {
+      drawn.label = "corrected path";
+      drawn.colour = kCorrectedColour;
+    } else if (failed) {
+      drawn.label = std::string(to_string(path.status));
+      std::ranges::replace(drawn.label, '_', ' ');
+    } else if (!single) {
+      drawn.colour = path_colour(source);
+    }
+    scene_.paths.push_back(std::move(drawn));
+    if (!single) return;
+    for (std::size_t i = 1; i < path.candidates.size() && (output_.all_ways || !path.unique); ++i) {
+      const PathCandidate& other = path.candidates[i];
+      if (other.points.cols() < 2) continue;
+      scene_.paths.push_back(
+          {.points = other.points, .label = "another way", .colour = path_colour(i), .length = other.length});
+    }
   }
-  const double cell = output.paths.empty() ? 0 : output.paths.front()->cell;
-  if (output.surface.dim() <= 3 && cell > 0 && output.paths.front()->num_cells <= kMostCellsDrawn) {
-    Points centres = display_cells(output.surface, {.cell = cell}, context);
-    if (centres.cols() <= kMostCellsDrawn) scene.cells = {.centres = std::move(centres), .size = cell};
+
+  void add_ends() {
+    if (num_paths_ == 1) {
+      const PathResult& path = *only_path();
+      const bool closed = path.from.size() == path.to.size() && path.from == path.to;
+      scene_.points.push_back({.position = path.from, .label = closed ? "start" : "from"});
+      if (!closed) scene_.points.push_back({.position = path.to, .label = output_.end_name});
+      return;
+    }
+    for (std::size_t s = 0; s < output_.sources.size(); ++s) {
+      const SourcePaths& source = output_.sources[s];
+      if (source.paths.empty()) continue;
+      scene_.points.push_back({.position = source.paths.front()->from, .size = 1.6});
+      if (num_paths_ > kMostEndsMarked) continue;
+      for (const PathResult* path : source.paths) {
+        if (path->to.size() > 0)
+          scene_.points.push_back({.position = path->to, .colour = path_colour(s), .size = kDotSize});
+      }
+    }
   }
-  return scene;
-}
+
+  [[nodiscard]] Points source_points() const {
+    Points points(output_.surface.dim(), 0);
+    for (const SourcePaths& source : output_.sources) {
+      if (source.paths.empty()) continue;
+      points.conservativeResize(Eigen::NoChange, points.cols() + 1);
+      points.rightCols(1) = source.paths.front()->from;
+    }
+    return points;
+  }
+
+  [[nodiscard]] const PathResult* only_path() const {
+    for (const SourcePaths& source : output_.sources) {
+      if (!source.paths.empty()) return source.paths.front();
+    }
+    return nullptr;
+  }
+
+  /// Those of all paths that walked on cells of the first one's size.
+  void add_cells() {
+    SceneCells cells{.centres = {}, .label = "cells walked"};
+    std::set<std::vector<double>> centres;
+    for (const SourcePaths& source : output_.sources) {
+      for (const PathResult* path : source.paths) {
+        if (cells.size == 0) cells.size = path->cell;
+        if (path->cell != cells.size) continue;
+        const Points walked = walked_cells(*path);
+        for (const auto& centre : walked.colwise()) centres.emplace(centre.begin(), centre.end());
+      }
+    }
+    if (centres.empty()) return;
+    cells.centres.resize(output_.surface.dim(), static_cast<Index>(centres.size()));
+    Index j = 0;
+    for (const std::vector<double>& centre : centres) {
+      cells.centres.col(j++) = Eigen::Map<const Vector>(centre.data(), static_cast<Index>(centre.size()));
+    }
+    scene_.cells = std::move(cells);
+  }
+
+  [[nodiscard]] Points walked_cells(const PathResult& path) const {
+    if (output_.surface.dim() > 6 || !(path.cell > 0)) return Points(output_.surface.dim(), 0);
+    return display_cells(output_.surface, {.cell = path.cell});
+  }
+
+  /// Of all paths.
+  [[nodiscard]] Points ends() const {
+    Points points(output_.surface.dim(), 0);
+    for (const SourcePaths& source : output_.sources) {
+      for (const PathResult* path : source.paths) {
+        points.conservativeResize(Eigen::NoChange, points.cols() + 2);
+        points.rightCols(2) << path->from, path->to;
+      }
+    }
+    return points;
+  }
+
+  const PathOutput& output_;
+  Scene scene_;
+  std::size_t num_paths_ = 0;
+};
 
 }  // namespace
 
 CLI::Option* FileArguments::add_to(CLI::App& command, OutputKind kind, const std::string& what) {
   command
       .add_option_function<std::string>(
-          "--up", [this](const std::string& axis) { up = Eigen::Vector3d::Unit(axis[0] - 'x'); },
-          "axis that points up in pictures: x, y or z (default z)")
-      ->check(CLI::IsMember({"x", "y", "z"}));
+          "--up",
+          [this](const std::string& axis) {
+            up = Eigen::Vector3d::Unit(axis.back() - 'x') * (axis.size() > 1 ? -1 : 1);
+          },
+          "axis that points up in pictures: x, y, z, -x, -y or -z (default z)")
+      ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}));
+  command.add_option("--view", view,
+                     "AZIMUTH,ELEVATION in degrees to look from in pictures (default: chosen): 0,0 is from +x, 90,0 "
+                     "from +y, 0,90 from above");
   return command
       .add_option("--out", out, fmt::format("{} to FILE, by extension (repeatable): {}", what, known_outputs(kind)))
       ->allow_extra_args(false);
@@ -103,6 +239,44 @@ void FileArguments::check(OutputKind kind) const {
     }
     if (std::filesystem::is_directory(file, ignored)) throw IoError(file, "is a folder; name a file");
   }
+  (void)towards_viewer();
+  if (!view.empty() && !has_picture()) {
+    throw UsageError("--view is for pictures: give --out FILE.html, .svg or .png, too");
+  }
+}
+
+bool FileArguments::has_picture() const {
+  return std::ranges::any_of(out, [](const std::string& file) { return is_picture(extension_of(file)); });
+}
+
+Eigen::Vector3d FileArguments::towards_viewer() const {
+  if (view.empty()) return Eigen::Vector3d::Zero();
+  const Vector angles = parse_numbers(view, "--view");
+  if (angles.size() != 2 || !angles.allFinite() || std::abs(angles(1)) > 90) {
+    throw UsageError(fmt::format(
+        "--view {}: give azimuth,elevation in degrees, the elevation from -90 to 90, as in --view -60,24", view));
+  }
+  return view_direction(angles(0), angles(1), up);
+}
+
+void PathShow::add_to(CLI::App& command) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--show",
+          [this](const std::vector<std::string>& what) {
+            cells = std::ranges::count(what, "cells") > 0;
+            marched = std::ranges::count(what, "marched") > 0;
+          },
+          "in pictures, too: cells (those that were walked), marched (the path on them before its correction)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"cells", "marched"}));
+  command.add_flag("--field", field, "in pictures colour the surface by the marched distance from --from");
+}
+
+void PathShow::check(const FileArguments& files) const {
+  if (!(cells || marched || field) || files.has_picture()) return;
+  throw UsageError(
+      fmt::format("{} is for pictures: give --out FILE.html, .svg or .png, too", field ? "--field" : "--show"));
 }
 
 void write_paths(const FileArguments& files, const PathOutput& output, const Context& context) {
@@ -110,18 +284,32 @@ void write_paths(const FileArguments& files, const PathOutput& output, const Con
   for (const std::string& file : files.out) {
     const std::string extension = extension_of(file);
     if (is_picture(extension)) {
-      if (!scene) scene = path_scene(output, files.up, context);
+      if (!scene) scene = PathScene(output, files).build(context);
       write_picture(file, extension, *scene);
-      continue;
+    } else if (extension != kJson) {
+      Polylines lines;
+      for (const SourcePaths& source : output.sources) {
+        for (const PathResult* path : source.paths) lines.lines.push_back(path->points);
+      }
+      write_polylines(file, lines);
     }
-    if (extension == ".json") {
-      write_text(file, output.json.dump(1) + "\n");
-      continue;
-    }
-    Polylines lines;
-    for (const PathResult* path : output.paths) lines.lines.push_back(path->points);
-    write_polylines(file, lines);
   }
+}
+
+void write_json_files(const FileArguments& files, const nlohmann::ordered_json& json) {
+  for (const std::string& file : files.out) {
+    if (extension_of(file) == kJson) write_text(file, json.dump(1) + "\n");
+  }
+}
+
+FieldOptions field_options(const PathOptions& options) {
+  return {.march = options.march, .grid = options.grid, .cell = options.cell};
+}
+
+std::string picture_title(const std::string& surface) {
+  std::string title = names_a_file(surface) ? std::filesystem::path(surface).filename().string() : surface;
+  if (title.size() > kLongestTitle) title = title.substr(0, kLongestTitle) + "...";
+  return title;
 }
 
 void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
@@ -137,6 +325,7 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       scene->title = output.title;
       scene->facts = output.facts;
       scene->up = files.up;
+      scene->towards_viewer = files.towards_viewer();
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
       for (Index j = 0; j < output.marks.cols(); ++j) {

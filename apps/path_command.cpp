@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -16,17 +14,17 @@
 #include "commands.hpp"
 #include "deliver_path.hpp"
 #include "load_surface.hpp"
-#include "number_rows.hpp"
 #include "output.hpp"
 #include "path_class.hpp"
 #include "path_pairs.hpp"
+#include "path_sources.hpp"
 #include "path_via.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/verify.hpp"
-#include "taut/io/csv_rows.hpp"
 #include "taut/query/path.hpp"
+#include "timer.hpp"
 
 namespace taut::app {
 namespace {
@@ -34,7 +32,7 @@ namespace {
 struct PathArguments {
   CommonArguments common;
   SurfaceArguments surface;
-  std::string from;
+  std::vector<std::string> from;
   std::string to;
   std::vector<std::string> via;
   std::string to_file;
@@ -43,17 +41,9 @@ struct PathArguments {
   std::string closed;
   PathOptions options;
   DeliveryArguments delivery;
+  PathShow show;
   bool verify = false;
   std::vector<const CLI::Option*> of_the_flow;  // without effect on other methods
-};
-
-class Timer {
- public:
-  [[nodiscard]] double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point start_ = Clock::now();
 };
 
 /// Follows the path from its start as a ray and reports where it lands.
@@ -80,13 +70,20 @@ void add_verification(const Surface& surface, const PathResult& result, const Co
 
 PathOutput output_of(const PathArguments& arguments, const Surface& surface, const PathResult& result,
                      const nlohmann::ordered_json& json, const std::vector<SceneFact>& facts) {
-  return {.surface = surface, .paths = {&result}, .json = json, .facts = facts, .title = arguments.surface.surface};
+  return {.surface = surface,
+          .sources = {{arguments.options.method == CorrectionMethod::grid ? "marched path" : "geodesic", {&result}}},
+          .json = json,
+          .facts = facts,
+          .title = picture_title(arguments.surface.surface),
+          .show = arguments.show,
+          .field = field_options(arguments.options),
+          .all_ways = arguments.options.all};
 }
 
 ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
                  const Timer& timer) {
   PathSolver solver(surface, arguments.options, context);
-  const Vector p = parse_point(arguments.from, "--from", surface);
+  const Vector p = parse_point(arguments.from.front(), "--from", surface);
   const Vector q = parse_point(arguments.to, "--to", surface);
   const PathResult result = solver.solve(p, q);
   clear_progress();
@@ -102,7 +99,7 @@ ExitCode run_via(const PathArguments& arguments, const Surface& surface, const C
                  const Timer& timer) {
   PathSolver solver(surface, arguments.options, context);
   Points points(surface.dim(), static_cast<Index>(arguments.via.size()) + 2);
-  points.col(0) = parse_point(arguments.from, "--from", surface);
+  points.col(0) = parse_point(arguments.from.front(), "--from", surface);
   for (std::size_t i = 0; i < arguments.via.size(); ++i) {
     points.col(static_cast<Index>(i) + 1) = parse_point(arguments.via[i], "--via", surface);
   }
@@ -114,7 +111,11 @@ ExitCode run_via(const PathArguments& arguments, const Surface& surface, const C
   std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
   add_legs(result, json);
   add_legs(result, facts);
-  return deliver_path(arguments.delivery, output_of(arguments, surface, result, json, facts), context);
+  PathOutput output = output_of(arguments, surface, result, json, facts);
+  for (std::size_t i = 1; i < result.legs.size(); ++i) {
+    output.marks.push_back({.position = result.legs[i].from, .label = "via"});
+  }
+  return deliver_path(arguments.delivery, output, context);
 }
 
 /// In the class of a polyline, or of a loop.
@@ -140,48 +141,11 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
     add_closed(loop, facts);
     return deliver(loop);
   }
-  const PolylineRequest request{.file = arguments.start, .from = arguments.from, .to = arguments.to};
+  const PolylineRequest request{
+      .file = arguments.start, .from = arguments.from.empty() ? "" : arguments.from.front(), .to = arguments.to};
   const PathResult path = shorten_polyline(request, surface, arguments.options, context);
   describe(path);
   return deliver(path);
-}
-
-ExitCode run_many(const PathArguments& arguments, const Surface& surface, const Context& context,
-                  double surface_seconds, const Timer& timer) {
-  PathSolver solver(surface, arguments.options, context);
-  const Vector p = parse_point(arguments.from, "--from", surface);
-  CsvRows rows(arguments.to_file);
-  const NumberRows targets = read_number_rows(rows, surface.dim(), std::numeric_limits<Index>::max(),
-                                              fmt::format("a point takes {}", surface.dim()));
-  const std::vector<PathResult> results = solver.solve_from(p, targets.values);
-  clear_progress();
-  const double total = timer.seconds();
-  bool all_ok = true;
-  std::vector<const PathResult*> drawn;
-  auto json = nlohmann::ordered_json::array();
-  std::string csv;
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const PathResult& result = results[k];
-    if (result.status != Status::ok) {
-      all_ok = false;
-      const std::string& problem = targets.problems[k].empty() ? result.message : targets.problems[k];
-      print_error(fmt::format("{} line {}: {}", arguments.to_file, targets.lines[k], problem));
-    }
-    if (result.points.cols() > 0) drawn.push_back(&result);
-    json.push_back(path_json(surface, result, arguments.options, surface_seconds, total));
-    csv += path_csv(result) + "\n";
-  }
-  if (arguments.delivery.json) {
-    std::cout << json.dump() << "\n";
-  } else {
-    std::cout << csv;
-  }
-  const std::vector<SceneFact> facts = {{"paths", std::to_string(results.size())},
-                                        {"time", fmt::format("{:.3g} s", total)}};
-  write_paths(arguments.delivery.files,
-              {.surface = surface, .paths = drawn, .json = json, .facts = facts, .title = arguments.surface.surface},
-              context);
-  return all_ok ? kDone : kSomeLinesFailed;
 }
 
 /// All that says which surface it is.
@@ -235,6 +199,7 @@ ExitCode run(const PathArguments& arguments) {
     throw UsageError(
         "give --from with --to, or --from with --to-file, or --pairs, --start or --closed (see taut path --help)");
   }
+  if (arguments.from.size() > 1 && !many) throw UsageError("several --from go with --to-file");
   const bool via = !arguments.via.empty();
   if (via && !one) throw UsageError("--via stands between --from and --to");
   if (via && (arguments.options.all || arguments.verify)) {
@@ -244,6 +209,7 @@ ExitCode run(const PathArguments& arguments) {
     throw UsageError("--verify is for one path found by --method newton");
   }
   arguments.delivery.files.check(OutputKind::path);
+  arguments.show.check(arguments.delivery.files);
   const std::vector<std::string>& out = arguments.delivery.files.out;
   if (pairs && (out.size() > 1 || (out.size() == 1 && !out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
@@ -257,7 +223,15 @@ ExitCode run(const PathArguments& arguments) {
   if (in_class) return run_in_class(arguments, surface, context, surface_seconds, timer);
   if (via) return run_via(arguments, surface, context, surface_seconds, timer);
   if (one) return run_one(arguments, surface, context, surface_seconds, timer);
-  if (many) return run_many(arguments, surface, context, surface_seconds, timer);
+  if (many) {
+    return answer_sources({.from = arguments.from,
+                           .to_file = arguments.to_file,
+                           .options = arguments.options,
+                           .surface = arguments.surface.surface,
+                           .show = arguments.show,
+                           .surface_seconds = surface_seconds},
+                          arguments.delivery, surface, context, timer);
+  }
   return run_pairs(arguments, surface, context);
 }
 
@@ -267,7 +241,10 @@ Run add_path_command(CLI::App& app) {
   auto arguments = std::make_shared<PathArguments>();
   CLI::App& command = *app.add_subcommand("path", "shortest path between two points");
   arguments->surface.add_to(command);
-  command.add_option("--from", arguments->from, "start: 1,0,0, or @17 for the 17th sample from 0");
+  command
+      .add_option("--from", arguments->from,
+                  "start: 1,0,0, or @17 for the 17th sample from 0 (repeatable with --to-file)")
+      ->allow_extra_args(false);
   command.add_option("--to", arguments->to, "end, likewise");
   command.add_option("--via", arguments->via, "a point to pass on the way (repeatable, in order), likewise")
       ->allow_extra_args(false);
@@ -309,6 +286,7 @@ Run add_path_command(CLI::App& app) {
   command.add_flag("--verify", arguments->verify,
                    "follow the path as an initial-value problem, and say where it lands");
   arguments->delivery.add_to(command);
+  arguments->show.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };
 }

@@ -87,7 +87,17 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
                      {"total", total_seconds}};
   if (result.flow) json["flow"] = flow_json(*result.flow);
   json["points"] = points_json(result.points);
+  json["grid_path"] = points_json(result.grid_path);
   return json;
+}
+
+void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& facts) {
+  if (json.contains("seconds")) {
+    Json& known = json["seconds"];
+    known["pictures"] = seconds;
+    if (known.contains("total")) known["total"] = known["total"].get<double>() + seconds;
+  }
+  facts.push_back({"pictures", duration(seconds)});
 }
 
 std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options, double surface_seconds,

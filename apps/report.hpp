@@ -19,6 +19,9 @@ namespace taut::app {
 [[nodiscard]] std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options,
                                                 double surface_seconds, double total_seconds);
 
+/// Adds what pictures took to the seconds of a path's JSON, and to its facts.
+void add_picture_seconds(double seconds, nlohmann::ordered_json& json, std::vector<SceneFact>& facts);
+
 /// The facts as aligned lines.
 [[nodiscard]] std::string facts_text(const std::vector<SceneFact>& facts);
 

@@ -1,0 +1,74 @@
+#include "path_sources.hpp"
+
+#include <fmt/format.h>
+
+#include <iostream>
+#include <limits>
+
+#include "number_rows.hpp"
+#include "points_argument.hpp"
+#include "report.hpp"
+#include "taut/io/csv_rows.hpp"
+#include "terminal.hpp"
+
+namespace taut::app {
+
+ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& delivery, const Surface& surface,
+                        const Context& context, const Timer& timer) {
+  const auto num_sources = static_cast<Index>(request.from.size());
+  Points sources(surface.dim(), num_sources);
+  for (Index s = 0; s < num_sources; ++s) {
+    sources.col(s) = parse_point(request.from[static_cast<std::size_t>(s)], "--from", surface);
+  }
+  CsvRows rows(request.to_file);
+  const NumberRows targets = read_number_rows(rows, surface.dim(), std::numeric_limits<Index>::max(),
+                                              fmt::format("a point takes {}", surface.dim()));
+  PathSolver solver(surface, request.options, context);
+  std::vector<std::vector<PathResult>> results;
+  for (Index s = 0; s < num_sources; ++s) results.push_back(solver.solve_from(sources.col(s), targets.values));
+  clear_progress();
+  const double total = timer.seconds();
+
+  bool all_ok = true;
+  std::size_t num_paths = 0;
+  std::vector<SourcePaths> drawn;
+  auto json = nlohmann::ordered_json::array();
+  std::string csv;
+  for (std::size_t s = 0; s < results.size(); ++s) {
+    drawn.push_back({"from " + request.from[s], {}});
+    for (std::size_t k = 0; k < results[s].size(); ++k, ++num_paths) {
+      const PathResult& result = results[s][k];
+      if (result.status != Status::ok) {
+        all_ok = false;
+        const std::string& problem = targets.problems[k].empty() ? result.message : targets.problems[k];
+        const std::string source = results.size() > 1 ? fmt::format("--from {}, ", request.from[s]) : "";
+        print_error(fmt::format("{}{} line {}: {}", source, request.to_file, targets.lines[k], problem));
+      }
+      if (result.points.cols() > 0) drawn.back().paths.push_back(&result);
+      json.push_back(path_json(surface, result, request.options, request.surface_seconds, total));
+      csv += path_csv(result) + "\n";
+    }
+  }
+  if (delivery.json) {
+    std::cout << json.dump() << "\n";
+  } else {
+    std::cout << csv;
+  }
+  if (results.size() > 1)
+    context.tell(fmt::format("{} paths from {} sources in {:.3g} s", num_paths, results.size(), total));
+
+  const PathOutput output{.surface = surface,
+                          .sources = std::move(drawn),
+                          .json = {},
+                          .facts = {{"sources", std::to_string(results.size())},
+                                    {"paths", std::to_string(num_paths)},
+                                    {"time", fmt::format("{:.3g} s", total)}},
+                          .title = picture_title(request.surface),
+                          .show = request.show,
+                          .field = field_options(request.options)};
+  write_paths(delivery.files, output, context);
+  write_json_files(delivery.files, json);
+  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+}  // namespace taut::app
