@@ -84,6 +84,9 @@ class PathScene {
   /// A surface that cannot be meshed is left out.
   void add_surface(const Context& context) {
     if (output_.show.field) {
+      if (output_.surface.dim() != 3 || output_.surface.codim() != 1) {
+        throw InvalidArgument("--field colours surfaces in 3 dimensions with one equation");
+      }
       FieldResult field = marched_field(output_.surface, source_points(), output_.field, context);
       const std::string distance = field.mesh.scalars.front().name;
       scene_.meshes.push_back({.mesh = std::move(field.mesh), .coloured_by = distance});
