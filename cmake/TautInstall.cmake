@@ -13,6 +13,8 @@ endif()
 
 install(TARGETS taut EXPORT tautTargets FILE_SET HEADERS)
 if(TAUT_BUILD_APPS)
+  # Modules of the library are opened by name.
+  set_target_properties(taut_app PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS taut_app)
 endif()
 install(EXPORT tautTargets NAMESPACE taut:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/taut)
