@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "surface/formula/clauses.hpp"
 #include "surface/formula/formula_function.hpp"
 #include "surface/formula/limits.hpp"
 #include "surface/formula/names.hpp"
@@ -63,6 +64,18 @@ Surface parse_surface(std::string_view formula, const FormulaOptions& options) {
   extras.box = options.box;
   if (!options.domain.empty()) extras.domain = parse_domain(options, function->dim());
   return Surface(std::move(function), std::move(extras));
+}
+
+Surface parse_clauses(std::string_view clauses, const FormulaOptions& options) {
+  require_dim(options.dim);
+  Graph graph;
+  const detail::Clauses found = detail::parse_clauses(clauses, graph);
+  const Index dim = options.dim.value_or(std::max<Index>(2, found.num_variables));
+  if (dim < found.num_variables) throw InvalidArgument("the clauses use z: give at least 3 dimensions");
+  SurfaceExtras extras;
+  extras.box = options.box;
+  if (!options.domain.empty()) extras.domain = parse_domain(options, dim);
+  return Surface(compile(std::move(graph), {found.root}, dim), std::move(extras));
 }
 
 std::shared_ptr<const ImplicitFunction> parse_function(std::string_view formula, const FormulaOptions& options) {

@@ -31,4 +31,12 @@ struct FormulaOptions {
 [[nodiscard]] std::shared_ptr<const ImplicitFunction> parse_function(std::string_view formula,
                                                                      const FormulaOptions& options = {});
 
+/// Reads clauses as fidget and libfive write them (.vm files): a line `NAME OPERATION OPERAND...` each, the last one is
+/// F. Operations: const, var-x, var-y, var-z, add sub mul div min max atan2 pow, neg abs square sqrt recip exp ln sin
+/// cos tan asin acos atan. It becomes a formula like any other: exact derivatives, interval bounds; min, max and abs
+/// make it piecewise smooth, with the derivatives of the first branch where two meet. `options.dim` is 2 or more
+/// (default: 3 where z is used, else 2); `options.parameters` serve the domain only. Throws ParseError, which names the
+/// line, also for operations that jump (floor, compare, ...), and InvalidArgument.
+[[nodiscard]] Surface parse_clauses(std::string_view clauses, const FormulaOptions& options = {});
+
 }  // namespace taut

@@ -1,0 +1,17 @@
+#include "taut/io/read_clauses.hpp"
+
+#include "io/input_file.hpp"
+
+namespace taut {
+
+Surface read_clauses(const std::filesystem::path& path, const FormulaOptions& options, const Context& context) {
+  detail::InputFile file = detail::read_file(path, context);
+  detail::normalise_text(file);
+  try {
+    return parse_clauses(file.bytes, options);
+  } catch (const ParseError& error) {
+    file.fail(error.what());
+  }
+}
+
+}  // namespace taut
