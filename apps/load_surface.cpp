@@ -12,8 +12,10 @@
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
+#include "taut/io/read_clauses.hpp"
 #include "taut/io/read_point_cloud.hpp"
 #include "taut/io/read_points.hpp"
+#include "taut/io/read_volume.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut::app {
@@ -37,10 +39,24 @@ FormulaOptions formula_options(const SurfaceArguments& arguments) {
 }
 
 Surface load_file(const SurfaceArguments& arguments, const Context& context) {
+  if (arguments.surface.ends_with(".vm")) {
+    if (const char* option = arguments.volume.given()) {
+      throw UsageError(fmt::format("{} is for volumes; {} is a clause file", option, arguments.surface));
+    }
+    return read_clauses(arguments.surface, formula_options(arguments), context);
+  }
   for (const auto& [given, option] :
        {std::pair{!arguments.parameters.empty(), "--set"}, std::pair{!arguments.domain.empty(), "--domain"},
         std::pair{arguments.dim.has_value(), "--dim"}}) {
     if (given) throw UsageError(fmt::format("{} is for formulas; {} is a file", option, arguments.surface));
+  }
+  if (is_volume_file(arguments.surface)) {
+    if (arguments.rbf.max_samples != RbfOptions().max_samples) throw UsageError("--samples-max is for point clouds");
+    if (arguments.rbf.support_radius != RbfOptions().support_radius) throw UsageError("--support is for point clouds");
+    return load_volume(arguments.surface, arguments.volume, arguments.rbf.smoothing, context);
+  }
+  if (const char* option = arguments.volume.given()) {
+    throw UsageError(fmt::format("{} is for volumes; {} is none", option, arguments.surface));
   }
   if (arguments.surface.ends_with(".taut")) {
     return make_surface(std::make_shared<const RbfModel>(read_model(arguments.surface)));
@@ -65,8 +81,9 @@ Surface with_samples(const Surface& surface, const std::string& file, const Cont
 
 void SurfaceArguments::add_to(CLI::App& command) {
   command
-      .add_option("SURFACE", surface,
-                  "a formula such as 'x^2+y^2+4z^2=1', a point cloud or mesh file, or a .taut model")
+      .add_option(
+          "SURFACE", surface,
+          "a formula such as 'x^2+y^2+4z^2=1', a point cloud, mesh, volume or clause (.vm) file, or a .taut model")
       ->required();
   command.add_option("--dim", dim, "dimension of a formula's space (default: its largest variable)")
       ->check(whole_number(2, 65535));
@@ -78,10 +95,13 @@ void SurfaceArguments::add_to(CLI::App& command) {
                      "points on or near a formula's surface, to start paths from in more than 6 dimensions");
   command.add_option("--box", box, "where to look: LO,HI or X0,X1,Y0,Y1,... (default: found)");
   add_fit_options(command, rbf);
+  volume.add_to(command);
 }
 
 void add_fit_options(CLI::App& command, RbfOptions& options) {
-  command.add_option("--smooth", options.smoothing, "smoothing of the fit; 0 passes through every sample")
+  command
+      .add_option("--smooth", options.smoothing,
+                  "smoothing of the fit; 0 passes through every sample. Of a volume: voxels")
       ->check(number_not_below_zero())
       ->group("Fitting a cloud");
   command.add_option("--samples-max", options.max_samples, "fit at most this many well-spread samples")
@@ -114,6 +134,9 @@ bool names_a_file(const std::string& surface) {
 }
 
 Surface load_surface(const SurfaceArguments& arguments, const Context& context) {
+  if (const char* option = arguments.volume.given(); option != nullptr && !names_a_file(arguments.surface)) {
+    throw UsageError(fmt::format("{} is for volumes; '{}' is a formula", option, arguments.surface));
+  }
   Surface surface = names_a_file(arguments.surface) ? load_file(arguments, context)
                                                     : parse_surface(arguments.surface, formula_options(arguments));
   if (!arguments.samples.empty()) surface = with_samples(surface, arguments.samples, context);

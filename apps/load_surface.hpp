@@ -8,6 +8,7 @@
 #include "taut/core/context.hpp"
 #include "taut/surface/rbf.hpp"
 #include "taut/surface/surface.hpp"
+#include "volume_argument.hpp"
 
 namespace taut::app {
 
@@ -20,6 +21,7 @@ struct SurfaceArguments {
   std::string box;
   std::string samples;  // file
   RbfOptions rbf;
+  VolumeArguments volume;
 
   void add_to(CLI::App& command);
 };
@@ -30,7 +32,7 @@ void add_fit_options(CLI::App& command, RbfOptions& options);
 /// Reads a cloud and fits it. What is wrong with the points names the file, as an IoError.
 [[nodiscard]] RbfModel fit_file(const std::string& path, const RbfOptions& options, const Context& context);
 
-/// The surface, from a formula, a point cloud (fitted) or a `.taut` model. Throws what the readers throw.
+/// The surface, from a formula, a point cloud (fitted), a volume or a `.taut` model. Throws what the readers throw.
 [[nodiscard]] Surface load_surface(const SurfaceArguments& arguments, const Context& context);
 
 /// True when SURFACE names a file rather than spelling a formula.

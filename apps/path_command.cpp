@@ -150,10 +150,12 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
 
 /// All that says which surface it is.
 std::string surface_text(const SurfaceArguments& arguments) {
-  std::string text = fmt::format("{} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
+  constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
+  std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
                                  fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box,
                                  arguments.samples, arguments.rbf.smoothing.value_or(-1), arguments.rbf.max_samples,
-                                 arguments.rbf.support_radius);
+                                 arguments.rbf.support_radius, arguments.volume.iso.value_or(kUnset),
+                                 arguments.volume.label.value_or(kUnset), arguments.volume.grid_name);
   if (!names_a_file(arguments.surface)) return text;
   std::error_code ignored;
   const auto time = std::filesystem::last_write_time(arguments.surface, ignored).time_since_epoch().count();
