@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 
+#include "cell_arguments.hpp"
 #include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
@@ -46,6 +47,8 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
                     {.march = arguments.options.march,
                      .grid = arguments.options.grid,
                      .cell = arguments.options.cell,
+                     .seeds = arguments.options.seeds,
+                     .envelope = arguments.options.envelope,
                      .tolerance = arguments.tolerance},
                     context);
   std::vector<PathResult> best;
@@ -77,14 +80,18 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
   return all_ok ? kDone : kSomeLinesFailed;
 }
 
-ExitCode run(const FieldArguments& arguments) {
+ExitCode run(FieldArguments arguments, const CLI::App& command) {
   if (arguments.at.empty() == arguments.files.out.empty()) {
     throw UsageError(
         "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
   }
+  if (arguments.at.empty())
+    refuse_without_effect(command, {"--tol"}, "it is for --at, distances to everywhere are marched");
+  check_envelope_usage(arguments.options.march, arguments.options.envelope);
   arguments.files.check(OutputKind::mesh);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
+  arguments.options.seeds = read_seeds(arguments.surface, surface, arguments.options.grid, context);
   const Points sources = parse_sources(arguments.from, surface);
   if (!arguments.at.empty()) return distances_at(arguments, surface, sources, context);
   if (surface.dim() != 3 || surface.codim() != 1) {
@@ -104,7 +111,7 @@ ExitCode run(const FieldArguments& arguments) {
     farthest = std::max(farthest, u);
   }
   const std::vector<SceneFact> facts = {
-      {"cells", fmt::format("{} of size {:.4g}", grouped(field.num_cells), field.cell)},
+      {"cells", cells_text(field.num_cells, field.cell, field.num_layers)},
       {"reached", fmt::format("{} of {} vertices", grouped(reached), grouped(distance.size()))},
       {"farthest", fmt::format("{:.6g}", farthest)}};
   write_mesh_files(arguments.files, {.surface = surface,
@@ -129,13 +136,12 @@ Run add_field_command(CLI::App& app) {
   command.add_option("--tol", arguments->tolerance, "relative tolerance of distances --at points")
       ->check(number_between(1e-13, 1e-3))
       ->capture_default_str();
-  command.add_option("--cell", arguments->options.cell, "grid cell size (default: chosen)")->check(positive_number());
-  command.add_option("--march", arguments->options.march, "convergent, axis (the paper's) or dijkstra")
-      ->transform(one_of<MarchMethod>(
-          {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
+  add_cell_options(command, arguments->options.cell, arguments->options.grid);
+  add_march_option(command, arguments->options.march);
+  add_envelope_option(command, arguments->options.envelope);
   arguments->files.add_to(command, OutputKind::mesh, "the surface with marched distances,");
   arguments->common.add_to(command);
-  return [arguments] { return run(*arguments); };
+  return [arguments, &command] { return run(*arguments, command); };
 }
 
 }  // namespace taut::app

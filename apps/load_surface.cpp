@@ -68,10 +68,7 @@ Surface load_file(const SurfaceArguments& arguments, const Context& context) {
 Surface with_samples(const Surface& surface, const std::string& file, const Context& context) {
   constexpr Index kMostDimensionsOfCells = 6;
   if (surface.samples() != nullptr) throw UsageError("--samples is for formulas; a cloud brings its own");
-  if (surface.dim() <= kMostDimensionsOfCells) {
-    context.tell("--samples is not needed: in up to 6 dimensions cells find the way");
-    return surface;
-  }
+  if (surface.dim() <= kMostDimensionsOfCells) return surface;  // read_seeds
   PointCloud cloud;
   cloud.points = read_points(file, surface.dim(), context);
   return surface.with_samples(std::make_shared<const PointCloud>(std::move(cloud)));
@@ -92,7 +89,8 @@ void SurfaceArguments::add_to(CLI::App& command) {
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--samples", samples,
-                     "points on or near a formula's surface, to start paths from in more than 6 dimensions");
+                     "points on or near a formula's surface: what --grid grow starts from; in more than 6 dimensions, "
+                     "what paths start from");
   command.add_option("--box", box, "where to look: LO,HI or X0,X1,Y0,Y1,... (default: found)");
   add_fit_options(command, rbf);
   volume.add_to(command);

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <memory>
 
-#include "checks.hpp"
+#include "cell_arguments.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
@@ -20,7 +20,7 @@ namespace {
 struct MeshArguments {
   CommonArguments common;
   SurfaceArguments surface;
-  double cell = 0;
+  DisplayMeshOptions options;
   FileArguments files;
 };
 
@@ -28,7 +28,9 @@ ExitCode run(const MeshArguments& arguments) {
   arguments.files.check(OutputKind::mesh);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
-  const SurfaceMesh mesh = display_mesh(surface, {.cell = arguments.cell}, context);
+  DisplayMeshOptions options = arguments.options;
+  options.seeds = read_seeds(arguments.surface, surface, options.grid, context);
+  const SurfaceMesh mesh = display_mesh(surface, options, context);
   clear_progress();
   const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
                                         {"triangles", grouped(mesh.faces.cols())}};
@@ -47,8 +49,7 @@ Run add_mesh_command(CLI::App& app) {
   auto arguments = std::make_shared<MeshArguments>();
   CLI::App& command = *app.add_subcommand("mesh", "triangles on the surface, every vertex exact");
   arguments->surface.add_to(command);
-  command.add_option("--cell", arguments->cell, "grid cell size: about the length of an edge (default: chosen)")
-      ->check(positive_number());
+  add_cell_options(command, arguments->options.cell, arguments->options.grid);
   arguments->files.add_to(command, OutputKind::mesh, "write")->required();
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };

@@ -10,6 +10,7 @@
 #include <memory>
 #include <vector>
 
+#include "cell_arguments.hpp"
 #include "checks.hpp"
 #include "commands.hpp"
 #include "deliver_path.hpp"
@@ -185,7 +186,24 @@ void check_class_usage(const PathArguments& arguments) {
   }
 }
 
-ExitCode run(const PathArguments& arguments) {
+/// Options that what was asked for never looks at.
+void check_effects(const PathArguments& arguments, const CLI::App& command) {
+  const PathOptions& options = arguments.options;
+  check_envelope_usage(options.march, options.envelope);
+  if (!arguments.start.empty() || !arguments.closed.empty()) {
+    refuse_without_effect(command, {"--march", "--envelope", "--grid", "--samples"},
+                          "a polyline is shortened as it is, without a march");
+  }
+  if (options.method == CorrectionMethod::grid) {
+    refuse_without_effect(command, {"--tol"}, "--method grid corrects nothing");
+  }
+  if (options.all && (options.march != MarchMethod::convergent || options.method == CorrectionMethod::grid)) {
+    throw UsageError(
+        "--all has no effect: only --march convergent tells ways round apart, and --method grid takes one");
+  }
+}
+
+ExitCode run(PathArguments arguments, const CLI::App& command) {
   const bool one = !arguments.from.empty() && !arguments.to.empty();
   const bool many = !arguments.from.empty() && !arguments.to_file.empty();
   const bool pairs = !arguments.pairs.empty();
@@ -210,6 +228,7 @@ ExitCode run(const PathArguments& arguments) {
   if (arguments.verify && ((!one && !in_class) || arguments.options.method != CorrectionMethod::newton)) {
     throw UsageError("--verify is for one path found by --method newton");
   }
+  check_effects(arguments, command);
   arguments.delivery.files.check(OutputKind::path);
   arguments.show.check(arguments.delivery.files);
   const std::vector<std::string>& out = arguments.delivery.files.out;
@@ -222,6 +241,9 @@ ExitCode run(const PathArguments& arguments) {
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   const double surface_seconds = timer.seconds();
+  if (!in_class) {
+    arguments.options.seeds = read_seeds(arguments.surface, surface, arguments.options.grid, context);
+  }
   if (in_class) return run_in_class(arguments, surface, context, surface_seconds, timer);
   if (via) return run_via(arguments, surface, context, surface_seconds, timer);
   if (one) return run_one(arguments, surface, context, surface_seconds, timer);
@@ -262,17 +284,14 @@ Run add_path_command(CLI::App& app) {
   command.add_option("--tol", options.tolerance, "relative length tolerance")
       ->check(number_between(1e-13, 1e-3))
       ->capture_default_str();
-  command.add_option("--cell", options.cell, "grid cell size (default: chosen)")->check(positive_number());
+  add_cell_options(command, options.cell, options.grid);
+  add_march_option(command, options.march);
+  add_envelope_option(command, options.envelope);
   command
       .add_option("--method", options.method,
-                  "newton: machine precision; flow: the paper's curvature flow; grid: no correction")
+                  "newton: machine precision; flow: the paper's curvature flow; grid: the marched path as it is")
       ->transform(one_of<CorrectionMethod>(
           {{"newton", CorrectionMethod::newton}, {"flow", CorrectionMethod::flow}, {"grid", CorrectionMethod::grid}}));
-  command.add_option("--march", options.march, "distances on the cells: convergent, axis (the paper's) or dijkstra")
-      ->transform(one_of<MarchMethod>(
-          {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
-  command.add_option("--grid", options.grid, "cells by subdivide (Algorithm I) or grow (Algorithm II)")
-      ->transform(one_of<GridMethod>({{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
   arguments->of_the_flow = {
       command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
           ->check(positive_number()),
@@ -290,7 +309,7 @@ Run add_path_command(CLI::App& app) {
   arguments->delivery.add_to(command);
   arguments->show.add_to(command);
   arguments->common.add_to(command);
-  return [arguments] { return run(*arguments); };
+  return [arguments, &command] { return run(*arguments, command); };
 }
 
 }  // namespace taut::app

@@ -50,10 +50,10 @@ Survey survey(const PairsFile& file, Index d) {
 std::string request_line(const PairsRequest& request, const PairsFile& file) {
   const PathOptions& options = request.options;
   std::string line =
-      fmt::format("taut path {} --pairs {} ({}) {} {} {} {} {} {} {} {} {} {}", request.surface, file.name(),
+      fmt::format("taut path {} --pairs {} ({}) {} {} {} {} {} {} {} {} {} {} {}", request.surface, file.name(),
                   file.version(), to_string(options.method), static_cast<int>(options.march),
-                  static_cast<int>(options.grid), options.cell, options.tolerance, options.spacing, options.beta,
-                  static_cast<int>(options.flow_step), static_cast<int>(options.flow_nodes), options.all);
+                  static_cast<int>(options.grid), options.envelope, options.cell, options.tolerance, options.spacing,
+                  options.beta, static_cast<int>(options.flow_step), static_cast<int>(options.flow_nodes), options.all);
   std::ranges::replace(line, '\n', ' ');
   return line;
 }

@@ -49,6 +49,30 @@ const char* to_string(CorrectionMethod method) {
   return "unknown";
 }
 
+const char* to_string(MarchMethod method) {
+  switch (method) {
+    case MarchMethod::convergent: return "convergent";
+    case MarchMethod::axis: return "axis";
+    case MarchMethod::dijkstra: return "dijkstra";
+  }
+  return "unknown";
+}
+
+const char* to_string(GridMethod method) {
+  switch (method) {
+    case GridMethod::automatic: return "automatic";
+    case GridMethod::subdivide: return "subdivide";
+    case GridMethod::grow: return "grow";
+  }
+  return "unknown";
+}
+
+std::string cells_text(Index num_cells, double cell, Index num_layers) {
+  std::string text = fmt::format("{} of size {:.4g}", grouped(num_cells), cell);
+  if (num_layers > 0) text += fmt::format(", an envelope with {} layer{}", num_layers, num_layers == 1 ? "" : "s");
+  return text;
+}
+
 Json path_json(const Surface& surface, const PathResult& result, const PathOptions& options, double surface_seconds,
                double total_seconds) {
   Json json;
@@ -60,8 +84,8 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["to"] = vector_json(result.to);
   json["length"] = has_path(result) ? number(result.length) : Json(nullptr);
   json["length_error"] = has_path(result) ? number(result.length_error) : Json(nullptr);
-  json["converged"] = result.status == Status::ok;
-  json["locally_shortest"] = result.locally_shortest;
+  json["converged"] = result.corrected ? Json(result.status == Status::ok) : Json(nullptr);
+  json["locally_shortest"] = result.corrected ? Json(result.locally_shortest) : Json(nullptr);
   json["index"] = has_path(result) && result.index ? Json(*result.index) : Json(nullptr);
   if (result.conjugate_at) json["conjugate_at"] = *result.conjugate_at;
   json["residual"] = {{"surface", number(result.residual.surface)},
@@ -77,6 +101,10 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["unique"] = nullptr;
   if (has_path(result) && (result.rivals_sought || !result.unique)) json["unique"] = result.unique;
   json["method"] = to_string(options.method);
+  json["march"] = result.num_cells > 0 ? Json(to_string(options.march)) : Json(nullptr);
+  json["marched"] = number(result.marched);
+  json["grid"] = result.grid == GridMethod::automatic ? Json(nullptr) : Json(to_string(result.grid));
+  json["envelope"] = result.num_layers;
   json["cell"] = result.cell;
   json["cells"] = result.num_cells;
   json["iterations"] = result.num_iterations;
@@ -109,7 +137,8 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
                                          : fmt::format("{:.15g}", result.length)});
   }
   std::string status(to_string(result.status));
-  if (result.status == Status::ok && options.method != CorrectionMethod::grid) {
+  if (!result.corrected && result.status == Status::ok) status += ", the path on the grid, not corrected";
+  if (result.status == Status::ok && result.corrected) {
     if (result.locally_shortest) {
       status += ", locally shortest";
     } else if (result.index.value_or(0) > 0) {
@@ -125,14 +154,19 @@ std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& o
     facts.push_back({i == 1 ? "also" : "", fmt::format("{:.15g}{}", result.candidates[i].length,
                                                        as_short ? ", as short: the shortest path is not unique" : "")});
   }
-  if (has_path(result) && options.method != CorrectionMethod::grid) {
+  if (has_path(result)) {
     facts.push_back({"residual", fmt::format("off the surface {:.1e}, geodesic curvature {:.1e}",
                                              result.residual.surface, result.residual.geodesic_curvature)});
+  }
+  if (has_path(result) && result.corrected) {
     facts.push_back({"method", fmt::format("{}, {} iterations", to_string(options.method), result.num_iterations)});
   }
   if (result.flow) std::ranges::move(flow_facts(*result.flow), std::back_inserter(facts));
+  if (has_path(result) && options.march != MarchMethod::convergent) {
+    facts.push_back({"march", fmt::format("{}, {:.6g} long", to_string(options.march), result.marched)});
+  }
   if (result.num_cells > 0) {
-    facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(result.num_cells), result.cell)});
+    facts.push_back({"cells", cells_text(result.num_cells, result.cell, result.num_layers)});
   }
   facts.push_back({"time", fmt::format("{} (surface {}, cells {}, march {}, correct {})", duration(total_seconds),
                                        duration(surface_seconds), duration(result.seconds.cells),
@@ -155,6 +189,10 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
   json["box"] = {{"lower", vector_json(summary.box.lower)}, {"upper", vector_json(summary.box.upper)}};
   json["cell"] = summary.cell;
   json["cells"] = summary.num_cells;
+  json["grid"] = summary.num_cells > 0 ? Json(to_string(summary.grid)) : Json(nullptr);
+  json["crossing_tests"] = summary.counts.num_tests;
+  if (summary.num_layers > 0)
+    json["envelope"] = {{"layers", summary.num_layers}, {"cells", summary.num_envelope_cells}};
   json["components"] = summary.components;
   json["samples"] = summary.num_samples;
   if (summary.num_samples > 0) {
@@ -171,7 +209,10 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
                                         summary.codim, summary.codim == 1 ? "" : "s", summary.dim - summary.codim)});
   if (summary.dim <= 6) facts.push_back({"box", corner(summary.box.lower) + " to " + corner(summary.box.upper)});
   if (summary.num_cells > 0) {
-    facts.push_back({"cells", fmt::format("{} of size {:.4g}", grouped(summary.num_cells), summary.cell)});
+    facts.push_back({"cells", cells_text(summary.num_cells, summary.cell, 0)});
+    if (summary.num_layers > 0) {
+      facts.push_back({"envelope", cells_text(summary.num_envelope_cells, summary.cell, summary.num_layers)});
+    }
     std::string components = std::to_string(summary.components.size());
     if (summary.components.size() > 1) {
       constexpr std::size_t kShown = 6;
@@ -195,8 +236,9 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
 
 std::string path_csv(const PathResult& result) {
   if (!has_path(result)) return fmt::format("nan,inf,0,0,{}", to_string(result.status));
-  return fmt::format("{},{},{:d},{:d},{}", result.length, result.length_error, result.status == Status::ok,
-                     result.locally_shortest, to_string(result.status));
+  return fmt::format("{},{},{:d},{:d},{}", result.length, result.length_error,
+                     result.corrected && result.status == Status::ok, result.locally_shortest,
+                     to_string(result.status));
 }
 
 }  // namespace taut::app

@@ -34,6 +34,11 @@ void add_picture_seconds(double seconds, nlohmann::ordered_json& json, std::vect
 /// "length,error,converged,locally_shortest,status" of one path, without a newline.
 [[nodiscard]] std::string path_csv(const PathResult& result);
 
+/// "12,345 of size 0.1", and the layers of an envelope, if any.
+[[nodiscard]] std::string cells_text(Index num_cells, double cell, Index num_layers);
+
 [[nodiscard]] const char* to_string(CorrectionMethod method);
+[[nodiscard]] const char* to_string(MarchMethod method);
+[[nodiscard]] const char* to_string(GridMethod method);
 
 }  // namespace taut::app

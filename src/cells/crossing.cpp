@@ -61,6 +61,7 @@ void CrossingTest::test(std::span<const std::int32_t> cells, int level, std::spa
   const Index d = surface_.dim();
   const Index n = static_cast<Index>(may_cross.size());
   const double scale = std::ldexp(1.0, level);
+  num_tested_ += n;
   std::fill(may_cross.begin(), may_cross.end(), std::uint8_t{0});
   for (Index begin = 0; begin < n; begin += kBlock) {
     const Index count = std::min(kBlock, n - begin);

@@ -30,6 +30,12 @@ class CrossingPool {
   };
 
   [[nodiscard]] const Surface& surface() const { return surface_; }
+  /// Cells tested so far, once all loans are over.
+  [[nodiscard]] Index num_tested() const {
+    Index sum = 0;
+    for (const auto& test : idle_) sum += test->num_tested();
+    return sum;
+  }
 
  private:
   std::unique_ptr<CrossingTest> take() {

@@ -62,6 +62,7 @@ class Growth {
           for (const std::int32_t side : {centre - 1, centre + 1}) {
             c = side;
             tested_.insert(neighbour);
+            ++num_lookups_;
           }
           c = centre;
         }
@@ -70,6 +71,9 @@ class Growth {
       context_.report("cells", -1);
     }
   }
+
+  /// Each cell ever looked at was tested once.
+  [[nodiscard]] CellCounts counts() const { return {.num_tests = tested_.num_cells(), .num_lookups = num_lookups_}; }
 
   [[nodiscard]] CellGrid crossed() const {
     CellGrid grid(tested_.origin(), tested_.size());
@@ -108,6 +112,7 @@ class Growth {
   std::vector<std::uint8_t> crossed_;  // by tested cell
   std::vector<Index> front_;           // crossed cells whose neighbours have not been looked at
   Index num_crossed_ = 0;
+  Index num_lookups_ = 0;
 };
 
 }  // namespace
@@ -138,6 +143,7 @@ CellGrid grow(const Surface& surface, const PointsIn& seeds, const GrowOptions& 
                        " that hold the seeds, such as " + detail::describe(seeds.col(0)));
   }
   growth.run();
+  if (options.counts != nullptr) *options.counts = growth.counts();
   return growth.crossed().sorted();
 }
 

@@ -159,6 +159,7 @@ CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, cons
     for (std::size_t c = 0; c < cells.size(); c += static_cast<std::size_t>(d)) grid.insert(cells.data() + c);
     cells = {};
   }
+  if (options.counts != nullptr) *options.counts = {.num_tests = pool.num_tested()};
   context.report("cells", 1);
   return grid;
 }

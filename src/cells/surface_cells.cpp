@@ -12,6 +12,7 @@
 #include "core/parallel.hpp"
 #include "surface/describe.hpp"
 #include "taut/cells/crossing.hpp"
+#include "taut/cells/envelope.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
@@ -32,6 +33,10 @@ constexpr double kEdgeSlack = 1e-9;
 // Of a cell: where a projection starts again that failed from the centre (two thin sheets meet in one cell, and the
 // gradient vanishes between them).
 constexpr double kRetryOffset = 0.25;
+
+// What has been done for a lazy cell.
+constexpr std::uint8_t kFaces = 1;  // its neighbours across faces are present
+constexpr std::uint8_t kAll = 2;    // all neighbours are
 
 std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
 
@@ -172,23 +177,24 @@ struct SurfaceCells::Growth {
   Surface surface;
   Context context;
   CrossingTest test;
-  int level;                           // a tile is 2^level cells wide
-  CellGrid tiles;                      // those resolved or pending
-  std::size_t limit;                   // bytes
+  int level;          // a tile is 2^level cells wide
+  CellGrid tiles;     // those resolved or pending
+  std::size_t limit;  // bytes
+  Index most_cells = CellGrid::kMaxCells;
   std::vector<std::int32_t> pending;   // d each
   std::vector<std::int32_t> found;     // d each
-  std::vector<std::uint8_t> expanded;  // by cell
+  std::vector<std::uint8_t> expanded;  // by cell: 0, kFaces or kAll
 };
 
 SurfaceCells::~SurfaceCells() = default;
 SurfaceCells::SurfaceCells(SurfaceCells&&) noexcept = default;
 SurfaceCells& SurfaceCells::operator=(SurfaceCells&&) noexcept = default;
 
-SurfaceCells::SurfaceCells(const Surface& surface, CellGrid grid, std::unique_ptr<Growth> growth)
-    : grid_(std::move(grid)), codim_(surface.codim()), growth_(std::move(growth)) {}
+SurfaceCells::SurfaceCells(CellGrid grid, Index codim, std::unique_ptr<Growth> growth)
+    : grid_(std::move(grid)), codim_(codim), growth_(std::move(growth)) {}
 
 SurfaceCells::SurfaceCells(const Surface& surface, CellGrid grid, const Context& context)
-    : SurfaceCells(surface, std::move(grid), std::unique_ptr<Growth>()) {
+    : SurfaceCells(std::move(grid), surface.codim(), nullptr) {
   if (surface.dim() != dim()) {
     throw InvalidArgument("the cells have " + std::to_string(dim()) + " dimensions, the surface " +
                           std::to_string(surface.dim()));
@@ -204,14 +210,16 @@ SurfaceCells::SurfaceCells(const Surface& surface, CellGrid grid, const Context&
   }
 }
 
-SurfaceCells SurfaceCells::lazy(const Surface& surface, const PointsIn& seeds, double size, const Context& context) {
+SurfaceCells SurfaceCells::lazy(const Surface& surface, const PointsIn& seeds, double size, const Context& context,
+                                Index most_cells) {
   if (seeds.rows() != surface.dim() || seeds.cols() == 0) {
     throw InvalidArgument("growing needs at least one seed with the surface's " + std::to_string(surface.dim()) +
                           " coordinates");
   }
   CellGrid grid(lattice_origin(seeds.col(0), size), size);
   auto growth = std::make_unique<Growth>(surface, grid, context);
-  SurfaceCells cells(surface, std::move(grid), std::move(growth));
+  growth->most_cells = most_cells;
+  SurfaceCells cells(std::move(grid), surface.codim(), std::move(growth));
   std::vector<std::int32_t> cell(idx(surface.dim()));
   for (Index j = 0; j < seeds.cols(); ++j) {
     cells.grid_.cell_of(seeds.col(j), cell);
@@ -226,6 +234,26 @@ SurfaceCells SurfaceCells::lazy(const Surface& surface, const PointsIn& seeds, d
                        " that hold the seeds, such as " + detail::describe(seeds.col(0)));
   }
   return cells;
+}
+
+SurfaceCells SurfaceCells::thickened(Index layers, const Context& context) const {
+  if (is_lazy()) throw InvalidArgument("only complete cells can be thickened");
+  SurfaceCells thick(thicken(grid_, layers, context), codim_, nullptr);
+  const Index n = thick.num_cells();
+  thick.num_valid_ = num_valid_;
+  thick.num_layers_ = layers;
+  const std::size_t bytes_a_cell = static_cast<std::size_t>(dim() * (1 + codim_)) * sizeof(double) + 1;
+  detail::check_memory(thick.grid_.bytes() + idx(n) * bytes_a_cell, detail::memory_limit(context), n, grid_.size());
+  thick.points_ = points_;
+  thick.normals_ = normals_;
+  thick.valid_ = valid_;
+  thick.points_.resize(idx(n * dim()));
+  thick.normals_.resize(idx(n * dim() * codim_), 0.0);
+  thick.valid_.resize(idx(n), 0);
+  for (Index i = num_cells(); i < n; ++i) {
+    Eigen::Map<Vector>(thick.points_.data() + i * dim(), dim()) = thick.grid_.centre(i);
+  }
+  return thick;
 }
 
 void SurfaceCells::project_new(const Surface& surface, const Context& context) {
@@ -261,6 +289,10 @@ void SurfaceCells::resolve_tiles() {
   for (std::size_t c = 0; c < growth.found.size(); c += idx(dim())) grid_.insert(growth.found.data() + c);
   growth.expanded.resize(idx(num_cells()), 0);
   detail::check_memory(bytes(), growth.limit, num_cells(), grid_.size());
+  if (num_cells() > growth.most_cells) {
+    throw OutOfMemory("the way was not found on " + std::to_string(growth.most_cells) + " cells of size " +
+                      detail::describe(grid_.size()) + ", and no more are grown: take larger cells (--cell)");
+  }
   Context serial = growth.context;
   serial.threads = 1;  // too little work at a time to share
   project_new(growth.surface, serial);
@@ -273,8 +305,8 @@ void SurfaceCells::expand(std::span<const Index> cells) {
   std::vector<std::int32_t> first(idx(d)), last(idx(d)), tile(idx(d));
   static_cast<void>(grid_.num_neighbours());  // refuses dimensions where neighbours cannot be listed
   for (const Index i : cells) {
-    if (growth_->expanded[idx(i)] != 0) continue;
-    growth_->expanded[idx(i)] = 1;
+    if (growth_->expanded[idx(i)] == kAll) continue;
+    growth_->expanded[idx(i)] = kAll;
     const auto cell = grid_.cell(i);
     for (Index a = 0; a < d; ++a) {
       first[idx(a)] = (cell[idx(a)] - 1) >> level;
@@ -289,6 +321,23 @@ void SurfaceCells::expand(std::span<const Index> cells) {
         if (!more) tile[idx(a)] = first[idx(a)];
       }
     }
+  }
+  resolve_tiles();
+}
+
+void SurfaceCells::expand_faces(Index i) {
+  if (!growth_ || growth_->expanded[idx(i)] != 0) return;
+  growth_->expanded[idx(i)] = kFaces;
+  const auto cell = grid_.cell(i);
+  std::vector<std::int32_t> tile(cell.begin(), cell.end());
+  for (auto& c : tile) c >>= growth_->level;
+  for (std::size_t a = 0; a < tile.size(); ++a) {
+    const std::int32_t centre = tile[a];
+    for (const std::int32_t side : {cell[a] - 1, cell[a] + 1}) {
+      tile[a] = side >> growth_->level;
+      growth_->want_tile(tile.data());
+    }
+    tile[a] = centre;
   }
   resolve_tiles();
 }

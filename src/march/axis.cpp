@@ -4,33 +4,29 @@
 #include <limits>
 #include <vector>
 
-#include "march/dimensions.hpp"
+#include "march/centre_reader.hpp"
+#include "march/centre_watch.hpp"
 #include "march/growing_field.hpp"
 #include "march/methods.hpp"
-#include "march/start.hpp"
-#include "march/target_watch.hpp"
 
 namespace taut::detail {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The paper's fast marching (sec. 3.2) between cell centres, as if the cells were a piece of flat R^d.
-template <int D, int K>
+/// The paper's fast marching (sec. 3.2; Sethian 1996) between cell centres, as if the cells were a piece of flat R^d.
+/// It walks all cells, valid or not, and no others: all that hang together across faces are reached.
 class AxisMarch {
  public:
   AxisMarch(const MarchTask& task, DistanceField& field)
       : cells_(task.cells),
         h_(cells_.grid().size()),
-        growing_(task, field, false),
+        growing_(task, field, GrowingField::Growth::faces),
         target_(task, field),
         coordinates_(static_cast<std::size_t>(field.sources.rows())) {
     for (Index s = 0; s < field.sources.cols(); ++s) {
-      const std::vector<Index> around = cells_around_source(cells_, field.sources.col(s));
-      const auto from_source = [&](Index i) { return (cells_.grid().centre(i) - field.sources.col(s)).norm(); };
-      const Index start = *std::min_element(around.begin(), around.end(),
-                                            [&](Index a, Index b) { return from_source(a) < from_source(b); });
-      growing_.offer(start, from_source(start), s);
+      const Index start = checked_start_cell(cells_.grid(), field.sources.col(s));
+      growing_.offer(start, (cells_.grid().centre(start) - field.sources.col(s)).norm(), s);
     }
   }
 
@@ -43,7 +39,7 @@ class AxisMarch {
       for (std::size_t a = 0; a < coordinates_.size(); ++a) {
         for (const int step : {-1, 1}) {
           const Index j = neighbour(i, a, step);
-          if (j == CellGrid::kNone || !cells_.valid(j) || growing_.settled(j)) continue;
+          if (j == CellGrid::kNone || growing_.settled(j)) continue;
           growing_.offer(j, update(j), growing_.source(i));
         }
       }
@@ -91,16 +87,13 @@ class AxisMarch {
   SurfaceCells& cells_;
   double h_;
   GrowingField growing_;
-  TargetWatch<D, K> target_;
+  CentreWatch target_;
   std::vector<std::int32_t> coordinates_;
   std::vector<double> upwind_;
 };
 
 }  // namespace
 
-void march_axis(const MarchTask& task, DistanceField& field) {
-  with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),
-                  [&]<int D, int K>() { AxisMarch<D, K>(task, field).run(); });
-}
+void march_axis(const MarchTask& task, DistanceField& field) { AxisMarch(task, field).run(); }
 
 }  // namespace taut::detail

@@ -8,6 +8,7 @@
 
 namespace taut {
 std::optional<Barrier> find_barrier(const SurfaceCells& cells, const DistanceField& field, const VectorIn& x) {
+  if (field.at_centres) return std::nullopt;  // it passes wherever cells share a face
   detail::Stencil stencil(cells.dim());
   const auto reached = [&](Index i) { return i < field.distance.size() && std::isfinite(field.distance(i)); };
   double least = std::numeric_limits<double>::infinity();

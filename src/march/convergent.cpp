@@ -29,7 +29,7 @@ class ConvergentMarch {
         direct_radius_(kDirectCells * cells_.grid().size()),
         longest_(task.options.target ? task.options.longest : std::numeric_limits<double>::infinity()),
         end_(task.options.target.value_or(Vector())),
-        field_(task, field, true),
+        field_(task, field),
         target_(task, field),
         solver_(d_, k_),
         frame_(d_, k_),

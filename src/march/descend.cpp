@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "march/centre_reader.hpp"
 #include "march/dimensions.hpp"
 #include "march/field_reader.hpp"
 #include "march/march_over.hpp"
@@ -145,6 +146,25 @@ class Descent {
   bool follows_on_ = false;  // the last step ran along the gradients, from one of last_gradient_
 };
 
+/// From cell to cell, by their centres.
+Points descend_centres(const CellGrid& grid, const DistanceField& field, const VectorIn& target) {
+  const Index d = target.size();
+  std::vector<double> points(target.data(), target.data() + d);
+  const auto append = [&](const VectorIn& x) { points.insert(points.end(), x.data(), x.data() + d); };
+  CentreReader reader(grid, field);
+  Index i = reader.last_cell(target).first;
+  if (i == CellGrid::kNone) return Points(d, 0);
+  Index source = reader.source_in(i);
+  while (source < 0) {
+    append(grid.centre(i));
+    i = reader.next_cell(i);
+    if (i == CellGrid::kNone) return Points(d, 0);
+    source = reader.source_in(i);
+  }
+  append(field.sources.col(source));
+  return Eigen::Map<const Points>(points.data(), d, static_cast<Index>(points.size()) / d);
+}
+
 }  // namespace
 
 Points descend_over(const Surface& surface, const SurfaceCells& cells, const CellMap* map, const DistanceField& field,
@@ -154,6 +174,7 @@ Points descend_over(const Surface& surface, const SurfaceCells& cells, const Cel
   }
   const Vector normals = normals_at(surface, target).col(0);
   if (!normals.allFinite()) return Points(surface.dim(), 0);
+  if (field.at_centres) return descend_centres(cells.grid(), field, target).rowwise().reverse();
   Points down;
   with_dimensions(surface.dim(), surface.codim(),
                   [&]<int D, int K>() { down = Descent<D, K>(surface, cells, field, map).run(target, normals); });

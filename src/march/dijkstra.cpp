@@ -1,5 +1,8 @@
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
+#include "march/centre_watch.hpp"
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
 #include "march/growing_field.hpp"
@@ -11,13 +14,14 @@
 namespace taut::detail {
 namespace {
 
+/// Over edges between the projected points of cells that touch, where one smooth sheet explains them.
 template <int D, int K>
 void run(const MarchTask& task, DistanceField& field) {
   SurfaceCells& cells = task.cells;
   const Index d = field.sources.rows();
   const Index k = field.source_normals.rows() / d;
   const auto point = [&](Index i) { return SurfacePoint{cells.point(i).data(), cells.normals(i).data()}; };
-  GrowingField growing(task, field, false);
+  GrowingField growing(task, field);
   TargetWatch<D, K> target(task, field);
   Edge<D> edge;
   for (Index s = 0; s < field.sources.cols(); ++s) {
@@ -42,9 +46,43 @@ void run(const MarchTask& task, DistanceField& field) {
   growing.finish(target.distance());
 }
 
+/// Between the centres of all cells of an envelope that touch.
+void run_between_centres(const MarchTask& task, DistanceField& field) {
+  const CellGrid& grid = task.cells.grid();
+  GrowingField growing(task, field);
+  CentreWatch target(task, field);
+  for (Index s = 0; s < field.sources.cols(); ++s) {
+    const Index start = checked_start_cell(grid, field.sources.col(s));
+    growing.offer(start, (grid.centre(start) - field.sources.col(s)).norm(), s);
+  }
+  std::vector<Index> neighbours(static_cast<std::size_t>(grid.num_neighbours()));
+  std::vector<double> lengths(neighbours.size());
+  std::vector<std::int32_t> offset(static_cast<std::size_t>(grid.dim()));
+  for (Index m = 0; m < grid.num_neighbours(); ++m) {
+    grid.neighbour_offset(m, offset);
+    double squares = 0;
+    for (const std::int32_t step : offset) squares += step * step;
+    lengths[static_cast<std::size_t>(m)] = grid.size() * std::sqrt(squares);
+  }
+  Front& front = growing.front();
+  while (!front.empty() && !target.is_final(front.min_key())) {
+    const double distance = front.min_key();
+    const Index i = growing.pop();
+    growing.settle(i, distance, growing.source(i));
+    grid.neighbours(i, neighbours);
+    for (std::size_t m = 0; m < neighbours.size(); ++m) {
+      const Index j = neighbours[m];
+      if (j != CellGrid::kNone && !growing.settled(j)) growing.offer(j, distance + lengths[m], growing.source(i));
+    }
+    target.settled(grid.cell(i));
+  }
+  growing.finish(target.distance());
+}
+
 }  // namespace
 
 void march_dijkstra(const MarchTask& task, DistanceField& field) {
+  if (field.at_centres) return run_between_centres(task, field);
   with_dimensions(field.sources.rows(), field.source_normals.rows() / field.sources.rows(),
                   [&]<int D, int K>() { run<D, K>(task, field); });
 }

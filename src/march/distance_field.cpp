@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 
+#include "march/centre_reader.hpp"
 #include "march/dimensions.hpp"
 #include "march/field_reader.hpp"
 #include "march/point_normals.hpp"
@@ -17,12 +18,19 @@ Vector distance_at(const Surface& surface, const SurfaceCells& cells, const Dist
   }
   const Points normals = detail::normals_at(surface, x);
   Vector result(x.cols());
+  const auto readable = [&](Index j) { return x.col(j).allFinite() && normals.col(j).allFinite(); };
+  if (field.at_centres) {
+    detail::CentreReader reader(cells.grid(), field);
+    for (Index j = 0; j < x.cols(); ++j) {
+      result(j) = readable(j) ? reader.distance(x.col(j)) : std::numeric_limits<double>::quiet_NaN();
+    }
+    return result;
+  }
   detail::with_dimensions(surface.dim(), surface.codim(), [&]<int D, int K>() {
     detail::FieldReader<D, K> reader(cells, field);
     for (Index j = 0; j < x.cols(); ++j) {
-      const bool readable = x.col(j).allFinite() && normals.col(j).allFinite();
-      result(j) = readable ? reader.distance({x.col(j).data(), normals.col(j).data()})
-                           : std::numeric_limits<double>::quiet_NaN();
+      result(j) = readable(j) ? reader.distance({x.col(j).data(), normals.col(j).data()})
+                              : std::numeric_limits<double>::quiet_NaN();
     }
   });
   return result;

@@ -6,15 +6,23 @@
 
 namespace taut::detail {
 
-GrowingField::GrowingField(const MarchTask& task, DistanceField& field, bool gradients)
-    : task_(task), field_(field), gradients_(gradients), memory_limit_(memory_limit(task.context)) {
+GrowingField::GrowingField(const MarchTask& task, DistanceField& field, Growth growth)
+    : task_(task),
+      field_(field),
+      growth_(growth),
+      gradients_(field.method == MarchMethod::convergent),
+      memory_limit_(memory_limit(task.context)) {
   field_.gradient.resize(field_.sources.rows(), 0);
   grow();
 }
 
 Index GrowingField::pop() {
   const Index i = front_.pop();
-  task_.cells.expand(i);
+  if (growth_ == Growth::faces) {
+    task_.cells.expand_faces(i);
+  } else {
+    task_.cells.expand(i);
+  }
   grow();
   return i;
 }

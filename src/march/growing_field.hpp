@@ -14,8 +14,10 @@ namespace taut::detail {
 /// the front holds the estimate.
 class GrowingField {
  public:
-  /// With or without gradients.
-  GrowingField(const MarchTask& task, DistanceField& field, bool gradients);
+  /// Which neighbours of a cell a lazy set must have before they are asked for.
+  enum class Growth { corners, faces };
+
+  GrowingField(const MarchTask& task, DistanceField& field, Growth growth = Growth::corners);
 
   [[nodiscard]] Front& front() { return front_; }
   [[nodiscard]] const DistanceField& field() const { return field_; }
@@ -50,7 +52,8 @@ class GrowingField {
 
   const MarchTask& task_;
   DistanceField& field_;
-  bool gradients_;
+  Growth growth_;
+  bool gradients_;  // of the convergent method
   std::size_t memory_limit_;
   Front front_;
 };

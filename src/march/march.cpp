@@ -36,7 +36,7 @@ Points checked_normals(const Surface& surface, const PointsIn& x, const std::str
 DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, const CellMap* map,
                                  const PointsIn& sources, const MarchOptions& options, const Context& context) {
   if (surface.dim() != cells.grid().dim()) throw InvalidArgument("the cells belong to another surface");
-  if (surface.dim() > detail::kMaxMarchDim) {
+  if (surface.dim() > detail::kMaxMarchDim && options.method != MarchMethod::axis) {
     throw InvalidArgument("dimension " + std::to_string(surface.dim()) + ": cells are marched up to dimension " +
                           std::to_string(detail::kMaxMarchDim));
   }
@@ -44,6 +44,8 @@ DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, co
   if (sources.cols() == 0) throw InvalidArgument("no source given");
   DistanceField field;
   field.method = options.method;
+  field.at_centres =
+      options.method == MarchMethod::axis || (options.method == MarchMethod::dijkstra && cells.num_layers() > 0);
   field.sources = sources;
   field.source_normals = checked_normals(surface, sources, "source");
   field.target_distance = std::numeric_limits<double>::quiet_NaN();

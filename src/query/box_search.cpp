@@ -17,8 +17,12 @@ namespace {
 constexpr Index kMostCellsBeforeWalks = 2'000'000;
 constexpr Index kMostCellsForSheets = 6'000'000;
 constexpr Index kMostCellsFarther = 500'000;
+/// On a surface fitted to samples a cell takes about a millisecond.
+constexpr Index kMostFittedCells = 100'000;
 /// A part of the box is looked at again where it is smaller by this.
 constexpr double kCloser = 0.7;
+/// Cells of another size are worth making if they are smaller by this.
+constexpr double kFiner = 0.75;
 /// Where the surface bends sharply along a path, that is done if it is smaller by this, or the marched way is wrong by
 /// more than that.
 constexpr double kLocal = 0.5;
@@ -49,7 +53,13 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
   const auto take = [&](const Starts& starts) {
     result.cell = starts.cell;
     result.rivals_sought = starts.rivals_sought;
-    if (starts.cells) result.num_cells = starts.cells->num_cells();
+    result.marched = starts.marched;
+    result.walked_cells = starts.walked;
+    if (starts.cells) {
+      result.num_cells = starts.cells->num_cells();
+      result.num_layers = starts.cells->num_layers();
+      result.grid = levels().grid();
+    }
     result.seconds.cells += starts.seconds.cells;
     result.seconds.march += starts.seconds.march;
   };
@@ -79,7 +89,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     result.message = kApart;
     return result;
   };
-  for (int level = 0; level < levels().num_levels(); ++level) {
+  for (int level = 0; level < num_levels(); ++level) {
     if (finder_.known_to_be_apart(level, p, q)) return disconnected();
     Starts starts;
     try {
@@ -106,7 +116,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
         walked = walk(result, p, q, corrector);
         if (walked->status == Status::ok) return *std::move(walked);
       }
-      if (finer > kMostCellsForSheets) break;
+      if (finer > (surface_.samples() != nullptr ? kMostFittedCells : kMostCellsForSheets)) break;
       context_.tell(fmt::format("cells of {:.3g} cannot tell the sheets of the surface apart; trying finer ones",
                                 levels().size(level)));
       continue;
@@ -114,12 +124,12 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     // Within a cell the start is as good as it gets; without cells there is no other.
     const bool only = !levels().exist() || (p - q).norm() < result.cell;
     const bool second_try = best.has_value();
-    const bool last = only || second_try || level + 1 == levels().num_levels();
+    const bool last = only || second_try || level + 1 == num_levels();
     sure = corrector.correct(result, starts, last) || only;
     marched = starts.paths.front().length;
     if (!best || is_better(result, *best)) {
       best = result;
-      doubts = doubted(result, starts, level);
+      doubts = result.corrected && doubted(result, starts, level);
     }
     best->seconds = result.seconds;
     if (sure || second_try) break;
@@ -142,6 +152,10 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
   return doubts ? look_closer(*std::move(best), corrector) : *std::move(best);
 }
 
+/// The paper's march goes wherever cells hang together: where it finds no way, finer cells would have none either. It
+/// keeps to the cells that were asked for.
+int BoxSearch::num_levels() const { return marches_between_centres(options_) ? 1 : levels().num_levels(); }
+
 /// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest. Sharp
 /// bends alone are no reason where finer cells for the part of the box that matters would be hardly finer.
 bool BoxSearch::doubted(const PathResult& found, const Starts& starts, int level) const {
@@ -155,7 +169,8 @@ bool BoxSearch::doubted(const PathResult& found, const Starts& starts, int level
 }
 
 /// Cells too coarse for the whole box may be fine enough for the part of it that shorter paths can visit: the ellipsoid
-/// about the ends whose points are no farther from both than the path is long.
+/// about the ends whose points are no farther from both than the path is long. Where the size was asked for, cells of
+/// the size that would be chosen there do, too. The paper's march keeps to its cells, and only says so.
 PathResult BoxSearch::look_closer(PathResult found, Corrector& corrector) const {
   found.rivals_sought = false;
   if (found.status != Status::ok) return found;
@@ -163,12 +178,27 @@ PathResult BoxSearch::look_closer(PathResult found, Corrector& corrector) const 
     found.message = fmt::format(
         "a shorter path may exist: cells of {:.3g} are coarser than the surface bends, and miss ways", found.cell);
   }
+  if (look_ == Look::closer || marches_between_centres(options_)) return found;
   const Box& whole = levels().box();
   const Box near = intersection(box_of_shorter_paths(found.from, found.to, found.length), whole);
-  if (look_ == Look::closer || near.extent().maxCoeff() > kCloser * whole.extent().maxCoeff()) return found;
-  BoxSearch closer(surface_.with_box(near), options_, context_, Look::closer);
-  closer.prepare(chord(found.from, found.to));
-  PathResult again = closer.find(found.from, found.to, corrector);
+  const bool asked_for = options_.cell > 0;
+  if (!asked_for && near.extent().maxCoeff() > kCloser * whole.extent().maxCoeff()) return found;
+  PathOptions options = options_;
+  options.cell = 0;
+  const Points ends = chord(found.from, found.to);
+  auto closer = std::make_unique<BoxSearch>(surface_.with_box(near), options, context_, Look::closer);
+  closer->prepare(ends);
+  if (closer->levels().size(0) > kFiner * found.cell) {
+    options.cell = found.cell / 2;
+    closer = std::make_unique<BoxSearch>(surface_.with_box(near), options, context_, Look::closer);
+    closer->prepare(ends);
+  }
+  PathResult again;
+  try {
+    again = closer->find(found.from, found.to, corrector);
+  } catch (const OutOfMemory&) {  // what was found is not lost
+    return found;
+  }
   if (again.status != Status::ok || again.length > (1 + options_.tolerance) * found.length) return found;
   add_seconds(found, again);
   return again;

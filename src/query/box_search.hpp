@@ -39,6 +39,7 @@ class BoxSearch {
                                 std::optional<Starts> first = std::nullopt) const;
 
  private:
+  [[nodiscard]] int num_levels() const;
   [[nodiscard]] bool doubted(const PathResult& found, const Starts& starts, int level) const;
   [[nodiscard]] PathResult walk(const PathResult& so_far, const Vector& p, const Vector& q, Corrector& corrector) const;
   [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;

@@ -9,6 +9,7 @@
 #include "query/cell_size.hpp"
 #include "query/normal_turns.hpp"
 #include "taut/cells/components.hpp"
+#include "taut/cells/envelope.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/surface/projection.hpp"
@@ -28,6 +29,8 @@ constexpr int kMostRefinements = 12;
 constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
 constexpr double kPointsPerSide = 16;
+/// Lazy cells in so many dimensions: along the largest coordinate.
+constexpr double kLazyCellsPerRadius = 3;
 
 }  // namespace
 
@@ -53,10 +56,27 @@ void check_point(const Surface& surface, const VectorIn& x, const char* name) {
   if (!x.allFinite()) throw InvalidArgument(fmt::format("{} point {}: coordinates must be finite", name, text_of(x)));
 }
 
-CellLevels::CellLevels(Surface surface, GridMethod grid, double cell, Context context)
-    : surface_(std::move(surface)), grid_(grid), context_(std::move(context)), cell_(cell) {
-  if (!(cell >= 0) || !std::isfinite(cell)) {
-    throw InvalidArgument(fmt::format("cell size {}: must be positive, or 0 to have it chosen", cell));
+CellLevels::CellLevels(Surface surface, CellRequest request, Context context)
+    : surface_(std::move(surface)),
+      request_(std::move(request)),
+      context_(std::move(context)),
+      seeds_(surface_.dim(), 0) {
+  if (!(request_.size >= 0) || !std::isfinite(request_.size)) {
+    throw InvalidArgument(fmt::format("cell size {}: must be positive, or 0 to have it chosen", request_.size));
+  }
+  if (request_.seeds.cols() > 0) {
+    if (!grows_from_ends()) {
+      throw InvalidArgument(
+          "seeds are for Algorithm II on a surface that brings no samples: give them with GridMethod::grow only");
+    }
+    if (request_.seeds.rows() != surface_.dim() || !request_.seeds.allFinite()) {
+      throw InvalidArgument(fmt::format("seeds: each must be {} finite numbers", surface_.dim()));
+    }
+  }
+  if (surface_.dim() > kMostDimensions && request_.method == GridMethod::subdivide) {
+    throw InvalidArgument(
+        fmt::format("cells are subdivided in up to {} dimensions, not in {}: grow them (Algorithm II)", kMostDimensions,
+                    surface_.dim()));
   }
 }
 
@@ -69,57 +89,112 @@ bool CellLevels::prepare(const PointsIn& near) {
   if (again) {
     bool inside = true;
     for (Index j = 0; j < near.cols(); ++j) inside = inside && extent_.window.contains(near.col(j));
-    if (inside || surface_.box()) return false;
+    if (inside || surface_.box()) {
+      if (!plant(near)) return false;
+      complete_.clear();
+      return true;
+    }
     complete_.clear();
   }
-  if (!exist()) {
+  if (surface_.dim() > kMostDimensions) {
     if (near.cols() == 0) return again;  // nothing to judge by yet
     extent_.box = extent_.window = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
-    size_ = std::max(box().extent().maxCoeff(), near.cwiseAbs().maxCoeff()) / kPointsPerSide;
+    const double extent = std::max(box().extent().maxCoeff(), near.cwiseAbs().maxCoeff());
+    size_ = request_.size > 0 ? request_.size : extent / (lazy() ? kLazyCellsPerRadius : kPointsPerSide);
     return again;
   }
   extent_ = find_extent(surface_, near, context_);
-  size_ = cell_;
+  size_ = request_.size;
   if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box());
+  (void)plant(near);
   return again;
 }
 
-bool CellLevels::grows() const { return grid_ == GridMethod::grow || (grid_ == GridMethod::automatic && fitted()); }
+/// Adds seeds where Algorithm II has to begin for the points near (d x n). True where there are cells that do not hold
+/// all of them.
+bool CellLevels::plant(const PointsIn& near) {
+  if (!grows_from_ends() || lazy()) return false;
+  Points planted(surface_.dim(), request_.seeds.cols() + near.cols());
+  if (request_.seeds.cols() > 0) planted.leftCols(request_.seeds.cols()) = request_.seeds;
+  planted.rightCols(near.cols()) = near;
+  const auto evaluator = surface_.make_evaluator();
+  const auto found = project_to_surface(*evaluator, surface_.dim(), surface_.codim(), planted);
+  const bool made = !complete_.empty() && complete_.front().cells;
+  bool missing = false;
+  std::vector<Index> kept;
+  for (Index j = 0; j < planted.cols(); ++j) {
+    if (!found(j)) continue;
+    if (made && complete_.front().cells->grid().find_point(planted.col(j)) != CellGrid::kNone) continue;
+    missing = true;
+    kept.push_back(j);
+  }
+  if (!missing) return false;
+  const auto num_kept = static_cast<Index>(kept.size());
+  seeds_.conservativeResize(surface_.dim(), seeds_.cols() + num_kept);
+  seeds_.rightCols(num_kept) = planted(Eigen::all, kept);
+  return made;
+}
 
-std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
+bool CellLevels::grows() const {
+  return request_.method == GridMethod::grow || (request_.method == GridMethod::automatic && fitted());
+}
+
+std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h, CellCounts* counts) const {
   if (grows()) return nullptr;
   return std::make_shared<SurfaceCells>(
-      surface_, subdivide(surface_, {.size = h, .box = box(), .origin = {}}, context_), context_);
+      surface_, subdivide(surface_, {.size = h, .box = box(), .origin = {}, .counts = counts}, context_), context_);
+}
+
+std::shared_ptr<SurfaceCells> CellLevels::grown(double h, CellCounts* counts) const {
+  const GrowOptions options{.size = h, .origin = {}, .counts = counts};
+  if (fitted()) {
+    return std::make_shared<SurfaceCells>(surface_, grow(surface_, surface_.samples()->points, options, context_),
+                                          context_);
+  }
+  if (seeds_.cols() == 0) {
+    throw InvalidArgument(
+        "Algorithm II grows cells from points of the surface: give it some (--samples FILE), or "
+        "subdivide");
+  }
+  return std::make_shared<SurfaceCells>(surface_, grow(surface_.with_box(box()), seeds_, options, context_), context_);
 }
 
 /// Finds out whether the surface bends too much from one of the coarsest cells to the next for marched distances to
-/// tell ways apart, and makes them finer if it does, where that costs little (d = 3).
+/// tell ways apart, and makes them finer if it does, where that costs little (d = 3, subdivided, of no given size).
 void CellLevels::refine_to_curvature() {
-  std::shared_ptr<SurfaceCells>& coarsest = complete_.front().cells;
+  Complete& coarsest = complete_.front();
+  const bool refines = surface_.dim() == 3 && request_.size == 0 && !grows();
   for (int i = 0; i < kMostRefinements; ++i) {
-    const NormalTurns turns(*coarsest, context_);
+    const NormalTurns turns(*coarsest.cells, context_);
     resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, kTypically);
     const bool enough = resolved_ && (i >= kRefinementsForRims || turns.mostly_within(kMostTurn, kNearlyEverywhere));
-    if (enough || surface_.dim() != 3 || 4 * coarsest->num_cells() > kMostRefinedCells) return;
+    if (enough || !refines || 4 * coarsest.cells->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
-    coarsest = subdivided(size_);
+    coarsest.cells = subdivided(size_, &coarsest.counts);
   }
 }
 
 std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds) {
   if (lazy()) {
-    return std::make_shared<SurfaceCells>(SurfaceCells::lazy(surface_, seeds, size(level), context_));
+    return std::make_shared<SurfaceCells>(SurfaceCells::lazy(surface_, seeds, size(level), context_, kMostLazyCells));
   }
   const std::lock_guard lock(mutex_);
   complete_.resize(std::max(complete_.size(), static_cast<std::size_t>(level) + 1));
-  std::shared_ptr<SurfaceCells>& slot = complete_[static_cast<std::size_t>(level)].cells;
-  if (slot) return slot;
-  if (grows()) {
-    slot = std::make_shared<SurfaceCells>(surface_, grow(surface_, surface_.samples()->points, size(level), context_),
-                                          context_);
-  } else {
-    slot = subdivided(size(level));
-    if (level == 0 && cell_ == 0) refine_to_curvature();
+  Complete& slot = complete_[static_cast<std::size_t>(level)];
+  if (slot.cells) return slot.cells;
+  slot.cells = grows() ? grown(size(level), &slot.counts) : subdivided(size(level), &slot.counts);
+  if (level == 0) refine_to_curvature();
+  return slot.cells;
+}
+
+std::shared_ptr<SurfaceCells> CellLevels::envelope(int level, Index layers) {
+  if (lazy()) throw InvalidArgument("cells that grow where the march goes have no envelope");
+  const std::shared_ptr<SurfaceCells> bare = cells(level, Points(surface_.dim(), 0));
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<SurfaceCells>& slot = complete_.at(static_cast<std::size_t>(level)).envelope;
+  if (!slot) {
+    slot = std::make_shared<SurfaceCells>(
+        bare->thickened(layers == kEnvelopeByLaw ? envelope_layers(bare->grid()) : layers, context_));
   }
   return slot;
 }

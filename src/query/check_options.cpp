@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "query/cell_levels.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {
@@ -24,6 +25,28 @@ void check_options(const PathOptions& options) {
                     "surface",
                     options.beta));
   }
+  check_envelope(options.envelope, options.march);
+}
+
+void check_envelope(Index layers, MarchMethod march) {
+  if (layers < kEnvelopeByLaw) {
+    throw InvalidArgument(fmt::format("envelope {}: an envelope has zero or more layers of cells", layers));
+  }
+  if (layers != 0 && march == MarchMethod::convergent) {
+    throw InvalidArgument("an envelope is for the marches between cell centres, axis and dijkstra");
+  }
+}
+
+void check_cells(const Surface& surface, const PathOptions& options) {
+  if (surface.dim() <= CellLevels::kMostDimensions) return;
+  const bool asks = options.march != MarchMethod::convergent || options.cell > 0 || options.envelope != 0 ||
+                    options.grid != GridMethod::automatic || options.method == CorrectionMethod::grid;
+  const bool fits = options.march == MarchMethod::axis && options.grid == GridMethod::grow && options.envelope == 0;
+  if (!asks || fits) return;
+  throw InvalidArgument(fmt::format(
+      "in {} dimensions (more than {}) paths are found without cells, or on cells that grow where the march "
+      "goes: ask for --grid grow with --march axis and no envelope, or for neither",
+      surface.dim(), CellLevels::kMostDimensions));
 }
 
 }  // namespace taut::detail

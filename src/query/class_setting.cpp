@@ -36,7 +36,7 @@ ClassSetting class_setting(const Surface& surface, const StrandMaker& maker, con
   if (options.method == CorrectionMethod::grid) {
     throw InvalidArgument("method grid: a polyline is shortened by newton or flow");
   }
-  CellLevels levels(surface, options.grid, options.cell, context);
+  CellLevels levels(surface, {options.grid, options.cell, {}}, context);
   levels.prepare(polyline);
   ClassSetting setting;
   setting.cell = levels.size(0);

@@ -14,6 +14,7 @@
 #include "query/candidates.hpp"
 #include "query/contender.hpp"
 #include "query/flow_options.hpp"
+#include "query/polyline_residual.hpp"
 #include "query/shortening.hpp"
 #include "query/splices.hpp"
 #include "query/stopwatch.hpp"
@@ -24,6 +25,8 @@ namespace {
 
 /// A corrected path is never much longer than its start; one that is has jumped somewhere.
 constexpr double kMostGrowth = 1.1;
+/// A start between cell centres may cut corners through a thick envelope.
+constexpr double kMostGrowthBetweenCentres = 1.6;
 /// Starts are corrected as long as they may turn out the shortest, their lengths being as wrong as is to be expected,
 /// or this many times as wrong as those of the ways corrected before.
 constexpr double kErrorFactor = 3;
@@ -177,11 +180,13 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
       geodesic.points = start;
       geodesic.length = start_length;
       geodesic.length_error = std::numeric_limits<double>::infinity();  // nothing is known about it
+      geodesic.residual = polyline_residual(surface_, start);
       geodesic.status = Status::ok;
       break;
   }
   explain(corrected);
-  if (geodesic.status == Status::ok && geodesic.length > kMostGrowth * start_length) {
+  const double most_growth = marches_between_centres(options_) ? kMostGrowthBetweenCentres : kMostGrowth;
+  if (geodesic.status == Status::ok && geodesic.length > most_growth * start_length) {
     geodesic.status = Status::not_converged;
     corrected.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
                                     geodesic.length, start_length);
@@ -295,6 +300,11 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
     result.message = "the curve found does not lead from one end to the other; please report this";
   }
   result.seconds.correct += watch.seconds();
+  result.corrected = options_.method != CorrectionMethod::grid;
+  if (!result.corrected) {
+    result.candidates.clear();  // no geodesic among them
+    return true;
+  }
   return result.status == Status::ok && result.length <= (1 + starts.doubt) * starts.paths.front().length &&
          result.length <= promised;
 }

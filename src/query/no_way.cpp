@@ -115,7 +115,6 @@ void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_
         "cell of {:.2g}; geodesics over a crease or through a singular point are not supported",
         fmt::join(barrier->point, ", "), barrier->turn * 180 / std::numbers::pi, result.cell);
   } else {
-    result.status = Status::disconnected;
     result.message = fmt::format(
         "no path was found on cells down to {:.3g}, nor by walks from both ends; that there is none is not proved: a "
         "smaller box around both points may help",

@@ -77,6 +77,7 @@ struct PathSolver::Impl {
 
 PathSolver::PathSolver(Surface surface, PathOptions options, Context context) {
   detail::check_options(options);
+  detail::check_cells(surface, options);
   impl_ = std::make_unique<Impl>(std::move(surface), options, context);
 }
 PathSolver::~PathSolver() = default;
@@ -170,22 +171,22 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
     detail::check_point(impl.surface, targets.col(j), "end");
     return impl.levels().on_surface(targets.col(j), "end");
   };
-  if (!impl.levels().exist()) {
+  if (!impl.levels().exist() || impl.levels().lazy()) {
     return impl.for_all(targets.cols(), true, [&](Index j, Impl::Corrector& corrector) {
       return impl.search.find(from, target(j), corrector);
     });
   }
   PathSeconds shared;
   detail::Stopwatch watch;
-  const std::shared_ptr<SurfaceCells> cells = impl.search.finder().cells(0, from);
+  const detail::Ground ground = impl.search.finder().ground(0, from);
   shared.cells = watch.restart();
-  const DistanceField field = impl.search.finder().march_all(*cells, from);
+  const DistanceField field = impl.search.finder().march_all(ground, from);
   shared.march = watch.seconds();
   // Lazy cells grow while they are marched on: one at a time.
   std::vector<PathResult> results =
-      impl.for_all(targets.cols(), !cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
+      impl.for_all(targets.cols(), !ground.cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
         const Vector to = target(j);
-        return impl.search.find(from, to, corrector, impl.search.finder().continue_to(cells, field, to));
+        return impl.search.find(from, to, corrector, impl.search.finder().continue_to(ground, field, to));
       });
   if (!results.empty()) {
     results.front().seconds.cells += shared.cells;

@@ -44,7 +44,7 @@ const BoxSearch& PathSearch::through(int doublings) const {
   if (!wider_[at]) {
     const SurfaceExtent seen = through_window(surface_, levels().extent(), window(doublings), context_);
     wider_[at] = std::make_unique<BoxSearch>(surface_.with_box(seen.box), options_, context_, BoxSearch::Look::farther);
-    wider_[at]->prepare(Points(surface_.dim(), 0));
+    wider_[at]->prepare(levels().grows_from_ends() ? points_ : Points(surface_.dim(), 0));
   }
   return *wider_[at];
 }

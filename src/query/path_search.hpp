@@ -21,7 +21,8 @@ class PathSearch {
 
   /// Makes sure that the points near (d x n) lie where cells are looked for.
   void prepare(const PointsIn& near) {
-    if (near_.prepare(near)) wider_.clear();
+    if (near_.prepare(near) || levels().grows_from_ends()) wider_.clear();
+    points_ = near;
   }
   /// For `num_pairs` pairs to come.
   void tabulate(Index num_pairs) { near_.tabulate(num_pairs); }
@@ -43,6 +44,7 @@ class PathSearch {
   const PathOptions& options_;
   const Context& context_;
   BoxSearch near_;
+  Points points_;  // of interest, by the last `prepare`
   mutable std::mutex mutex_;
   mutable std::vector<std::unique_ptr<BoxSearch>> wider_;  // through windows 2, 4, 8, ... times as wide
 };

@@ -55,11 +55,7 @@ std::string explain(const ExponentialResult& result, double length) {
 
 struct RaySolver::Impl {
   Impl(Surface s, const ExponentialOptions& o, Context c)
-      : surface(std::move(s)),
-        options(o),
-        context(std::move(c)),
-        levels(surface, GridMethod::automatic, 0, context),
-        map(surface, options) {}
+      : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, {}, context), map(surface, options) {}
 
   Surface surface;
   ExponentialOptions options;

@@ -15,7 +15,6 @@
 #include "query/normal_turns.hpp"
 #include "query/side_steps.hpp"
 #include "query/stopwatch.hpp"
-#include "taut/cells/components.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/march/march.hpp"
 
@@ -63,17 +62,35 @@ bool in_two(SurfaceCells& cells, const std::vector<std::int32_t>& label, const V
   return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
 }
 
+/// Centres of the cells that one of the fields has come to.
+Points walked_cells(const CellGrid& grid, const DistanceField& from_p, const std::optional<DistanceField>& from_q) {
+  const auto reached = [](const DistanceField& field, Index i) {
+    return i < field.distance.size() && std::isfinite(field.distance(i));
+  };
+  std::vector<Index> walked;
+  for (Index i = 0; i < grid.num_cells(); ++i) {
+    if (reached(from_p, i) || (from_q && reached(*from_q, i))) walked.push_back(i);
+  }
+  Points centres(grid.dim(), static_cast<Index>(walked.size()));
+  for (std::size_t j = 0; j < walked.size(); ++j) centres.col(static_cast<Index>(j)) = grid.centre(walked[j]);
+  return centres;
+}
+
 }  // namespace
 
 StartFinder::StartFinder(const Surface& surface, const PathOptions& options, const Context& context)
-    : surface_(surface), options_(options), context_(context), levels_(surface, options.grid, options.cell, context) {}
+    : surface_(surface),
+      options_(options),
+      context_(context),
+      levels_(surface, {options.grid, options.cell, options.seeds}, context) {}
 
-std::shared_ptr<SurfaceCells> StartFinder::cells(int level, const PointsIn& seeds) const {
-  return levels_.cells(level, seeds);
+Ground StartFinder::ground(int level, const PointsIn& seeds) const {
+  if (options_.envelope != 0) return {levels_.envelope(level, options_.envelope), nullptr, nullptr};
+  std::shared_ptr<SurfaceCells> cells = levels_.cells(level, seeds);
+  return {std::move(cells), levels_.map(level), levels_.sharp_bends(level)};
 }
 
 bool StartFinder::bends_sharply(int level, const Points& curve) const {
-  if (options_.cell > 0) return false;
   const std::shared_ptr<const SharpBends> bends = levels_.sharp_bends(level);
   return bends && bends->along(curve);
 }
@@ -82,7 +99,7 @@ void StartFinder::tabulate(Index num_pairs) {
   if (!levels_.exist()) return;
   const Index dim = surface_.dim() - surface_.codim();
   const bool suits = dim == 2 && options_.march == MarchMethod::convergent && !options_.all && options_.cell == 0 &&
-                     options_.method != CorrectionMethod::grid;
+                     options_.method != CorrectionMethod::grid && !options_.keep_cells;
   if (levels_.lazy()) return;
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
   if (table_ || !suits) return;
@@ -168,14 +185,13 @@ Starts StartFinder::walk(const Vector& p, const Vector& q) const {
 Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   if (!levels_.exist()) return walk(p, q);
   const Stopwatch watch;
-  const std::shared_ptr<SurfaceCells> cells = levels_.cells(level, chord(p, q));
-  const Ground ground{cells, levels_.map(level), levels_.sharp_bends(level)};
+  const Ground ground = this->ground(level, chord(p, q));
   const double cells_seconds = watch.seconds();
   // No rival is longer than this, by the table.
   double longest = kInfinity;
   if (table_) {
     const double bound = table_->upper_bound(p, q);
-    longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * cells->grid().size();
+    longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * ground.cells->grid().size();
   }
   Starts starts = find_within(longest, ground, p, q);
   // What the table's coarse cells took for a way may be none.
@@ -214,8 +230,8 @@ DistanceField StartFinder::march_towards(const Ground& ground, const Vector& sou
   return march_over(surface_, *ground.cells, ground.map.get(), source, march_options, context_);
 }
 
-DistanceField StartFinder::march_all(SurfaceCells& cells, const Vector& p) const {
-  return march(surface_, cells, p, MarchOptions{.method = options_.march}, context_);
+DistanceField StartFinder::march_all(const Ground& ground, const Vector& p) const {
+  return march(surface_, *ground.cells, p, MarchOptions{.method = options_.march}, context_);
 }
 
 Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
@@ -227,6 +243,8 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   const Vector p = from_p.sources.col(0);
   const double distance = distance_at(surface_, cells, from_p, q)(0);
   const bool arrives = std::isfinite(distance);
+  starts.marched = distance;
+  if (from_p.at_centres) starts.doubt = kInfinity;  // such distances are too long or too short by far
   const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell);
   starts.rivals_sought = arrives && seeks_rivals();
   const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(chord(p, q));
@@ -244,6 +262,7 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   }
   if (starts.paths.empty()) starts.barrier = find_barrier(cells, from_p, q);
   starts.cells = ground.cells;
+  if (options_.keep_cells) starts.walked = walked_cells(cells.grid(), from_p, from_q);
   starts.seconds.march = watch.seconds();
   return starts;
 }
@@ -268,9 +287,8 @@ void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from
 }
 
 bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const Vector& q) const {
-  if (!cells.is_lazy()) return in_two(cells, *levels_.components(level), p, q);
-  for (Index c = 0; c < cells.num_cells(); ++c) cells.expand(c);
-  return in_two(cells, components(cells.grid()).label, p, q);
+  if (!cells.is_lazy()) return in_two(*levels_.cells(level, chord(p, q)), *levels_.components(level), p, q);
+  return true;  // lazy cells have grown until there were no more
 }
 
 bool StartFinder::known_to_be_apart(int level, const Vector& p, const Vector& q) const {

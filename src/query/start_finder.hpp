@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,12 +22,20 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
-  double error = 0.1;              ///< of the starts' lengths against those of the geodesics they lead to, relative
-  double doubt = 0.03;             ///< a path this much longer than the marched way has missed it, relative
-  bool rivals_sought = true;       ///< were there to be several ways, `paths` would hold them
+  double error = 0.1;         ///< of the starts' lengths against those of the geodesics they lead to, relative
+  double doubt = 0.03;        ///< a path this much longer than the marched way has missed it, relative
+  bool rivals_sought = true;  ///< were there to be several ways, `paths` would hold them
+  /// Of the ends, by the march; NaN where there was none.
+  double marched = std::numeric_limits<double>::quiet_NaN();
+  Points walked;                   ///< d x n: centres of the cells that were visited, if asked for
   std::optional<Barrier> barrier;  ///< where the march stopped short of the end, if it did
   PathSeconds seconds;
 };
+
+/// Does the march go between the centres of cells, as the paper's.
+[[nodiscard]] inline bool marches_between_centres(const PathOptions& options) {
+  return options.march == MarchMethod::axis || options.envelope != 0;
+}
 
 /// Finds ways between points of one surface to start corrections from. After `prepare`, the const members may be called
 /// from several threads.
@@ -55,17 +64,16 @@ class StartFinder {
   [[nodiscard]] Starts walk(const Vector& p, const Vector& q) const;
   /// Ways by marching on the cells of one level; by walks in more dimensions than cells reach.
   [[nodiscard]] Starts find(const Vector& p, const Vector& q, int level) const;
-  /// The distances from p over all cells of level 0, for `continue_to`.
-  [[nodiscard]] DistanceField march_all(SurfaceCells& cells, const Vector& p) const;
-  /// Ways where the distances from p over the cells of level 0 are there already, at least up to q.
-  [[nodiscard]] Starts continue_to(std::shared_ptr<SurfaceCells> cells, const DistanceField& from_p,
-                                   const Vector& q) const {
-    return continue_to({std::move(cells), levels_.map(0), levels_.sharp_bends(0)}, from_p, q, std::nullopt);
+  /// What is marched over at a level. `seeds` as of CellLevels::cells.
+  [[nodiscard]] Ground ground(int level, const PointsIn& seeds) const;
+  /// The distances from p over all cells, for `continue_to`.
+  [[nodiscard]] DistanceField march_all(const Ground& ground, const Vector& p) const;
+  /// Ways where the distances from p are there already, at least up to q.
+  [[nodiscard]] Starts continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q) const {
+    return continue_to(ground, from_p, q, std::nullopt);
   }
   /// Does the surface bend within the cells of a level along a curve (d x m). False for cells of a given size.
   [[nodiscard]] bool bends_sharply(int level, const Points& curve) const;
-  /// The cells of a level, shared unless they are lazy.
-  [[nodiscard]] std::shared_ptr<SurfaceCells> cells(int level, const PointsIn& seeds) const;
 
   /// True when p and q lie in different components of the cells that found no way, which is a proof where the surface
   /// has interval bounds.

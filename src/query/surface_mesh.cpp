@@ -43,11 +43,13 @@ double size_for_budget(const Points& samples, Index most) {
 /// The cells to look at: those for marching would be too coarse.
 CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
   const Points near = options.near.rows() == surface.dim() ? options.near : Points(surface.dim(), 0);
-  // Cells grown lazily from two ends are for paths; a picture wants all of them.
   const bool fitted = surface.samples() != nullptr && surface.samples()->size() > 0;
   const bool grown = fitted && options.grid != GridMethod::subdivide;
-  detail::CellLevels levels(surface, grown ? GridMethod::grow : GridMethod::subdivide, options.cell, context);
+  const bool from_seeds = !fitted && options.grid == GridMethod::grow;
+  const GridMethod method = grown || from_seeds ? GridMethod::grow : GridMethod::subdivide;
+  detail::CellLevels levels(surface, {method, options.cell, options.seeds}, context);
   levels.prepare(near);
+  if (from_seeds) return levels.cells(options.cell > 0 ? 0 : 1, near)->grid();
   const double finest = options.cell_at_most > 0 ? options.cell_at_most : std::numeric_limits<double>::infinity();
   if (grown) {
     const Points& samples = surface.samples()->points;
@@ -97,8 +99,8 @@ CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& option
 }
 
 Points display_cells(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
-  detail::CellLevels levels(surface, options.grid, options.cell, context);
-  if (!levels.exist()) {
+  detail::CellLevels levels(surface, {options.grid, options.cell, options.seeds}, context);
+  if (!levels.exist() || levels.lazy()) {
     throw InvalidArgument("cells are made in up to 6 dimensions, not in " + std::to_string(surface.dim()));
   }
   levels.prepare(Points(surface.dim(), 0));

@@ -42,8 +42,11 @@ void throw_if_rank_deficient(const Surface& surface, const detail::CellLevels& l
 
 }  // namespace
 
-SurfaceSummary summarise(const Surface& surface, double cell, const Context& context) {
-  detail::CellLevels levels(surface, GridMethod::automatic, cell, context);
+SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, const Context& context) {
+  detail::CellLevels levels(surface, {options.grid, options.cell, options.seeds}, context);
+  if (levels.lazy()) {
+    throw InvalidArgument("in more than 6 dimensions cells grow only where a march goes: there are none to look at");
+  }
   SurfaceSummary summary;
   summary.kind = surface.kind();
   summary.dim = surface.dim();
@@ -56,6 +59,13 @@ SurfaceSummary summarise(const Surface& surface, double cell, const Context& con
       summary.box = levels.box();
       summary.cell = cells->grid().size();
       summary.num_cells = cells->num_cells();
+      summary.grid = levels.grid();
+      summary.counts = levels.counts(0);
+      if (options.envelope != 0) {
+        const std::shared_ptr<SurfaceCells> envelope = levels.envelope(0, options.envelope);
+        summary.num_layers = envelope->num_layers();
+        summary.num_envelope_cells = envelope->num_cells();
+      }
       const Components found = components(cells->grid());
       summary.components.assign(static_cast<std::size_t>(found.count), 0);
       for (const std::int32_t label : found.label) ++summary.components[static_cast<std::size_t>(label)];

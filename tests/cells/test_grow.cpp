@@ -112,6 +112,24 @@ TEST(Grow, EndsInAClearErrorWhereTheSurfaceDoesNot) {
   EXPECT_THROW((void)grow(plane, Eigen::Vector3d(0, 0, 0), 0), InvalidArgument);
 }
 
+// Appendix I: each cell looked at is tested once, and each cell of the patch looks at its 2 d neighbours.
+TEST(Grow, CountsItsWork) {
+  for (const Index d : {2, 3, 4}) {
+    const Surface sphere = test::bounded_sphere(Vector::Zero(d), 1);
+    CellCounts grown;
+    const Index n = grow(sphere, Vector::Unit(d, 0), {.size = 0.2, .counts = &grown}).num_cells();
+    EXPECT_EQ(grown.num_lookups, 2 * d * n);
+    EXPECT_GT(grown.num_tests, n);
+    EXPECT_LE(grown.num_tests, 1 + grown.num_lookups);
+    CellCounts halved;
+    const Index m = subdivide(sphere, {.size = 0.2, .counts = &halved}).num_cells();
+    EXPECT_EQ(halved.num_lookups, 0);
+    // The halves of each cell of the level above, of which there are fewer.
+    EXPECT_GT(halved.num_tests, m);
+    EXPECT_LE(halved.num_tests, 2 * (Index{1} << d) * m);
+  }
+}
+
 TEST(Components, AlikeForCellsThatTouchInACorner) {
   CellGrid grid(Vector::Zero(3), 1);
   for (std::int32_t c = 0; c < 4; ++c) grid.insert(std::vector<std::int32_t>{c, -c, c});

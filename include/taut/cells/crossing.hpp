@@ -38,6 +38,9 @@ class CrossingTest {
   /// `may_cross` (n) where the surface may cross the closed cell, else 0. Best called for hundreds of cells.
   void test(std::span<const std::int32_t> cells, int level, std::span<std::uint8_t> may_cross);
 
+  /// How many cells were tested so far.
+  [[nodiscard]] Index num_tested() const { return num_tested_; }
+
   /// Do F and the domain have interval bounds?
   [[nodiscard]] bool rigorous() const { return has_bounds_ && (domain_ == nullptr || domain_has_bounds_); }
   /// Has F interval bounds, so that cells of any size may be tested?
@@ -58,6 +61,7 @@ class CrossingTest {
   Surface surface_;
   Vector origin_;
   double size_;
+  Index num_tested_ = 0;
   std::unique_ptr<Evaluator> function_;
   std::unique_ptr<Evaluator> domain_;  // null = nowhere cut
   bool has_bounds_ = false;

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "taut/cells/cell_counts.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
@@ -14,6 +15,8 @@ struct GrowOptions {
   double size = 0;
   /// Where cell 0 begins, d; unset = lattice_origin(middle of the seeds, size).
   std::optional<Vector> origin = std::nullopt;
+  /// Where to count the work; null = nowhere.
+  CellCounts* counts = nullptr;
 };
 
 /// Algorithm II of the paper (sec. 3.1): the cells that hold a seed and are crossed (CrossingTest), and all crossed

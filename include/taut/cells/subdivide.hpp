@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "taut/cells/cell_counts.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/cells/find_box.hpp"
 #include "taut/core/box.hpp"
@@ -17,6 +18,8 @@ struct SubdivideOptions {
   std::optional<Box> box = std::nullopt;
   /// Where cell 0 begins, d; unset = lattice_origin(middle of the box, size).
   std::optional<Vector> origin = std::nullopt;
+  /// Where to count the work; null = nowhere.
+  CellCounts* counts = nullptr;
 };
 
 /// Algorithm I of the paper (sec. 3.1): halve the cells of the box that the surface may cross (CrossingTest) until they

@@ -20,9 +20,15 @@ class SurfaceCells {
   /// cell has a surface point.
   SurfaceCells(const Surface& surface, CellGrid grid, const Context& context = {});
   /// Lazy: starts with the cells around `seeds` (d x n surface points), on the lattice of lattice_origin(first seed,
-  /// size). Throws EmptySurface when no seed lies in a cell with a surface point.
+  /// size). Throws EmptySurface when no seed lies in a cell with a surface point; OutOfMemory, also later, when there
+  /// are more than `most_cells`.
   [[nodiscard]] static SurfaceCells lazy(const Surface& surface, const PointsIn& seeds, double size,
-                                         const Context& context = {});
+                                         const Context& context = {}, Index most_cells = CellGrid::kMaxCells);
+
+  /// Complete cells with `layers` of others around them (`thicken`), for marches over cell centres. Those given keep
+  /// their indices, points and normals; the others are not `valid`, since no surface point stands for them. Throws
+  /// InvalidArgument for lazy cells.
+  [[nodiscard]] SurfaceCells thickened(Index layers, const Context& context = {}) const;
 
   ~SurfaceCells();
   SurfaceCells(SurfaceCells&&) noexcept;
@@ -34,6 +40,8 @@ class SurfaceCells {
   [[nodiscard]] Index num_cells() const { return grid_.num_cells(); }
   [[nodiscard]] Index num_valid() const { return num_valid_; }
   [[nodiscard]] bool is_lazy() const { return growth_ != nullptr; }
+  /// Layers around the cells that the surface may cross; 0 = none.
+  [[nodiscard]] Index num_layers() const { return num_layers_; }
 
   /// d: the projected centre; the centre itself where not valid.
   [[nodiscard]] Eigen::Map<const Vector> point(Index i) const { return {points_.data() + i * dim(), dim()}; }
@@ -50,6 +58,9 @@ class SurfaceCells {
   void expand(Index i) { expand({&i, 1}); }
   /// The same for several cells in one visit of the evaluator: cheaper than one by one.
   void expand(std::span<const Index> cells);
+  /// After it, every one of the 2 d neighbours of cell i across a face that the surface may cross is present: a step of
+  /// Algorithm II. Otherwise as `expand`.
+  void expand_faces(Index i);
   /// Indices of the 3^d - 1 neighbours of cell i, kNone where absent, in the order of CellGrid::neighbour_offset. A
   /// lazy set is not expanded by asking.
   void neighbours(Index i, std::span<Index> out) const { grid_.neighbours(i, out); }
@@ -61,13 +72,14 @@ class SurfaceCells {
  private:
   struct Growth;
 
-  SurfaceCells(const Surface& surface, CellGrid grid, std::unique_ptr<Growth> growth);
+  SurfaceCells(CellGrid grid, Index codim, std::unique_ptr<Growth> growth);
   void project_new(const Surface& surface, const Context& context);
   void resolve_tiles();
 
   CellGrid grid_;
   Index codim_;
   Index num_valid_ = 0;
+  Index num_layers_ = 0;
   std::vector<double> points_;       // d x n
   std::vector<double> normals_;      // d k x n
   std::vector<std::uint8_t> valid_;  // n

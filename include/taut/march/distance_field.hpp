@@ -11,15 +11,18 @@ namespace taut {
 
 enum class MarchMethod {
   convergent,  ///< upwind updates on the projected points of all 3^d - 1 neighbours; second order, the default
-  axis,      ///< the paper's: fast marching with axis neighbours on exactly the surface's cells; biased (docs/march.md)
-  dijkstra,  ///< shortest walk over the projected points of neighbouring cells; biased (docs/march.md)
+  axis,        ///< the paper's: fast marching between cell centres, axis by axis; biased on the crossed cells alone,
+         ///< converges in an envelope of more layers (docs/march.md)
+  dijkstra,  ///< shortest walk over the projected points of cells that touch, in an envelope over their centres; biased
 };
 
 /// Distances from one or several sources at the projected points of cells. A value; it belongs to the cells it was
 /// marched on (lazy cells may have grown since: cells beyond `distance.size()` were not reached).
 struct DistanceField {
   MarchMethod method = MarchMethod::convergent;
-  /// n: distance at cells.point(i), model units; infinity where not reached, or not needed for the target.
+  /// Does distance(i) belong to the centre of cell i (axis, and dijkstra in an envelope) rather than to cells.point(i).
+  bool at_centres = false;
+  /// n: distance at the cells, model units; infinity where not reached, or not needed for the target.
   Vector distance;
   /// d x n: unit tangent at cells.point(i) in which the distance grows, i.e. the direction in which the shortest path
   /// from the source arrives. Convergent method only (else d x 0); zero where not reached.
@@ -35,7 +38,8 @@ struct DistanceField {
 
 /// Distances at arbitrary surface points (d x n), to the field's own accuracy: the update of the march itself, made at
 /// x from the cells around it. Exactly 0 at a source. Infinity where no reached cell lies around a point, NaN for a
-/// point that is not finite or singular. Convergent fields; for the others the best of |x - point(i)| + distance(i).
+/// point that is not finite or singular. Convergent fields; for the others the shortest of the ways straight from a
+/// cell.
 [[nodiscard]] Vector distance_at(const Surface& surface, const SurfaceCells& cells, const DistanceField& field,
                                  const PointsIn& x);
 

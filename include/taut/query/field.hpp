@@ -11,7 +11,9 @@ namespace taut {
 struct FieldOptions {
   MarchMethod march = MarchMethod::convergent;
   GridMethod grid = GridMethod::automatic;
-  double cell = 0;  ///< grid cell size h, model units; 0 = chosen
+  double cell = 0;     ///< grid cell size h, model units; 0 = chosen
+  Index envelope = 0;  ///< as PathOptions::envelope
+  Points seeds = {};   ///< as PathOptions::seeds
 };
 
 /// Distances from a source to everywhere, for display and for a quick answer: as exact as the cells (docs/march.md).
@@ -19,10 +21,12 @@ struct FieldResult {
   /// d = 3: the display mesh (`display_mesh`, its cells no larger than FieldOptions::cell) with a vertex scalar
   /// "distance" (model units, NaN where no path leads). Empty otherwise.
   SurfaceMesh mesh;
-  Points points;    ///< d x n: the projected cells
+  Points points;    ///< d x n: the cells' surface points; their centres for a march between those (axis, an envelope)
   Vector distance;  ///< n: distance at each, infinity where no path leads
   double cell = 0;  ///< h, model units
   Index num_cells = 0;
+  Index num_layers = 0;                     ///< of the envelope
+  GridMethod grid = GridMethod::automatic;  ///< how the cells were found
 };
 
 /// Marches from the nearest of `sources` (d x s, projected onto the surface) over all cells; d at most 6. Of a surface

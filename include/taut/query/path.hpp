@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,15 +18,18 @@ namespace taut {
 enum class CorrectionMethod {
   newton,  ///< Newton's method on a spectral curve: machine precision
   flow,    ///< the paper's curvature flow: second order in the node spacing
-  grid,    ///< nothing: the polyline from the cells, as it would be without a correction
+  grid,    ///< nothing: the marched path as it is on the cells (see `descend`), the paper's before its correction
 };
 
 /// How the cells around the surface are found.
 enum class GridMethod {
   automatic,  ///< grow for surfaces fitted to samples, subdivide for the others
   subdivide,  ///< Algorithm I: every cell the surface crosses
-  grow,       ///< Algorithm II: from the samples, or lazily from the two ends where there are none
+  grow,       ///< Algorithm II: from the samples or, on a surface without, from the two ends and PathOptions::seeds
 };
+
+/// PathOptions::envelope: as many layers as the error bound wants (`envelope_layers`).
+inline constexpr Index kEnvelopeByLaw = -1;
 
 struct PathOptions {
   CorrectionMethod method = CorrectionMethod::newton;
@@ -33,6 +37,11 @@ struct PathOptions {
   GridMethod grid = GridMethod::automatic;
   /// Grid cell size h, model units. 0 = chosen, and halved by itself where the cells cannot tell two sheets apart.
   double cell = 0;
+  /// d x n: points on or near a surface without samples from which Algorithm II grows, too (grid = grow).
+  Points seeds = {};
+  /// Layers of cells added on either side of those that the surface crosses (`thicken`), for the marches between cell
+  /// centres: axis and dijkstra. 0 = the bare cells; kEnvelopeByLaw.
+  Index envelope = 0;
   /// Relative length tolerance, 1e-13 .. 1e-3.
   double tolerance = 1e-9;
   /// eps_E, the node spacing of the flow, model units; 0 = chosen.
@@ -43,6 +52,8 @@ struct PathOptions {
   NodeSpread flow_nodes = NodeSpread::even;
   /// Look for every way round, however long, not only for rivals of the shortest.
   bool all = false;
+  /// Fill PathResult::walked_cells. Then every path is marched for itself, by no table.
+  bool keep_cells = false;
 };
 
 /// Wall-clock seconds of each stage. Stages shared by several paths count for the first of them.
@@ -68,7 +79,15 @@ struct PathResult : Geodesic {
   std::string message;
   double cell = 0;  ///< h of the cells that were walked, model units
   Index num_cells = 0;
-  Points grid_path;  ///< d x g: the polyline the correction started from
+  Index num_layers = 0;                     ///< of the envelope, PathOptions::envelope
+  GridMethod grid = GridMethod::automatic;  ///< how they were found; automatic = there are none
+  /// False where nothing was corrected (CorrectionMethod::grid): `status` ok then says that there is a marched path,
+  /// `points` are its corners, `residual` is what they and what lies between them miss.
+  bool corrected = true;
+  /// The distance of the ends by the march that led to `grid_path`, model units; NaN where there was none (walks).
+  double marched = std::numeric_limits<double>::quiet_NaN();
+  Points grid_path;     ///< d x g: the marched path, which the correction started from
+  Points walked_cells;  ///< d x n: centres of the cells that the march visited, if PathOptions::keep_cells
   /// Distinct geodesics that were found, shortest first; the first one is this path. Without PathOptions::all only
   /// those that might have been the shortest were looked for.
   std::vector<PathCandidate> candidates;

@@ -14,6 +14,7 @@ struct DisplayMeshOptions {
   bool exact = true;
   /// d x n: places that must be in the picture; they decide which part of a surface without end is shown.
   Points near = {};
+  Points seeds = {};  ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
 };
 
 /// The surface as triangles, its box and cell size chosen: `mesh_surface` for people in a hurry. Cells are half as

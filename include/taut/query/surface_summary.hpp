@@ -3,11 +3,20 @@
 #include <string>
 #include <vector>
 
+#include "taut/cells/cell_counts.hpp"
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
+#include "taut/query/path.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut {
+
+struct SummaryOptions {
+  double cell = 0;  ///< grid cell size h, model units; 0 = chosen
+  GridMethod grid = GridMethod::automatic;
+  Index envelope = 0;  ///< as PathOptions::envelope
+  Points seeds = {};   ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
+};
 
 /// What a surface is, before asking it anything.
 struct SurfaceSummary {
@@ -15,17 +24,22 @@ struct SurfaceSummary {
   Index dim = 0;
   Index codim = 0;
   // In more than 6 dimensions there are no cells: then these stay empty.
-  Box box;          ///< the cells' box: where the surface was found
-  double cell = 0;  ///< h, model units
-  Index num_cells = 0;
-  std::vector<Index> components;  ///< cells of each connected component, largest first
+  Box box;                                  ///< the cells' box: where the surface was found
+  double cell = 0;                          ///< h, model units
+  Index num_cells = 0;                      ///< that the surface may cross
+  GridMethod grid = GridMethod::automatic;  ///< how they were found
+  CellCounts counts;                        ///< the work that took
+  Index num_layers = 0;                     ///< of the envelope around them, where one was asked for ...
+  Index num_envelope_cells = 0;             ///< ... and all its cells
+  std::vector<Index> components;            ///< cells of each connected component, largest first
   Index num_samples = 0;
   double sample_rms = 0;  ///< of |F| / |grad F| over the samples, model units
   double sample_max = 0;
 };
 
-/// Looks at the surface on cells of size `cell` (0 = chosen). Throws EmptySurface, OutOfMemory,
-/// Cancelled; SingularPoint, naming the equations, where they depend on each other all over the surface.
-[[nodiscard]] SurfaceSummary summarise(const Surface& surface, double cell = 0, const Context& context = {});
+/// Looks at the surface on its cells. Throws EmptySurface, OutOfMemory, Cancelled; InvalidArgument for options that do
+/// not fit; SingularPoint, naming the equations, where they depend on each other all over the surface.
+[[nodiscard]] SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options = {},
+                                       const Context& context = {});
 
 }  // namespace taut
