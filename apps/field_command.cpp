@@ -3,20 +3,29 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
 #include <memory>
+#include <optional>
 
+#include "batch_errors.hpp"
 #include "cell_arguments.hpp"
 #include "checks.hpp"
 #include "commands.hpp"
+#include "ignored_faces.hpp"
+#include "input_files.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/read_points.hpp"
+#include "taut/io/write_geometry.hpp"
+#include "taut/query/distance.hpp"
 #include "taut/query/field.hpp"
-#include "taut/query/path.hpp"
+#include "taut/query/isolines.hpp"
 
 namespace taut::app {
 namespace {
@@ -27,8 +36,23 @@ struct FieldArguments {
   std::vector<std::string> from;
   std::string at;
   FieldOptions options;
-  double tolerance = 1e-9;
+  std::optional<double> tolerance;  // of exact distances
+  bool header = false;
+  double max_distance = std::numeric_limits<double>::infinity();
+  bool grid_only = false;
+  bool directions = false;
+  std::string isolines;
   FileArguments files;
+
+  [[nodiscard]] DistanceOptions distance_options(bool paths) const {
+    return {.tolerance = tolerance.value_or(DistanceOptions{}.tolerance),
+            .max_distance = max_distance,
+            .grid = options.grid,
+            .cell = options.cell,
+            .seeds = options.seeds,
+            .march = options.march,
+            .paths = paths};
+  }
 };
 
 Points parse_sources(const std::vector<std::string>& texts, const Surface& surface) {
@@ -39,45 +63,98 @@ Points parse_sources(const std::vector<std::string>& texts, const Surface& surfa
   return sources;
 }
 
-/// Exact distances at given points: a corrected path each, the shortest over the sources.
+/// ",x,y,z"
+std::string columns(const Points& vectors, Index j) {
+  std::string text;
+  for (Index c = 0; c < vectors.rows(); ++c) text += fmt::format(",{}", vectors(c, j));
+  return text;
+}
+
+/// "distance,error", and with --directions "source,departure1,...,arrival1,...".
+std::string header_line(Index dim, bool directions) {
+  std::string line = "distance,error";
+  if (directions) {
+    line += ",source";
+    for (const char* name : {"departure", "arrival"}) {
+      for (Index c = 1; c <= dim; ++c) line += fmt::format(",{}{}", name, c);
+    }
+  }
+  return line + "\n";
+}
+
+/// Exact distances at given points, a line each.
 ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, const Points& sources,
                       const Context& context) {
-  const Points at = read_points(arguments.at, surface.dim());
-  PathSolver solver(surface,
-                    {.march = arguments.options.march,
-                     .grid = arguments.options.grid,
-                     .cell = arguments.options.cell,
-                     .seeds = arguments.options.seeds,
-                     .envelope = arguments.options.envelope,
-                     .tolerance = arguments.tolerance},
-                    context);
-  std::vector<PathResult> best;
-  for (Index s = 0; s < sources.cols(); ++s) {
-    std::vector<PathResult> found = solver.solve_from(sources.col(s), at);
-    if (best.empty()) {
-      best = std::move(found);
-      continue;
-    }
-    for (std::size_t j = 0; j < best.size(); ++j) {
-      const bool better =
-          found[j].status == Status::ok && (best[j].status != Status::ok || found[j].length < best[j].length);
-      if (better) best[j] = std::move(found[j]);
-    }
-  }
+  const Points at = read_points(file_or_stdin(arguments.at), surface.dim(), context);
+  DistanceSolver solver(surface, sources, {}, arguments.distance_options(true), context);
+  const Distances found = solver.at(at);
   clear_progress();
-  bool all_ok = true;
-  for (const PathResult& result : best) {
-    if (result.status != Status::ok) {
-      all_ok = false;
-      print_error(fmt::format("{} point {}: {}", arguments.at, &result - best.data() + 1, result.message));
+  BatchErrors errors(arguments.at == "-" ? "standard input" : arguments.at);
+  std::string lines = arguments.header ? header_line(surface.dim(), arguments.directions) : "";
+  for (Index j = 0; j < at.cols(); ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    const bool ok = found.status[i] == Status::ok;
+    if (!ok) errors.tell(i + 1, found.message.at(j), "point");
+    const bool unknown = !ok && found.status[i] != Status::disconnected;
+    lines +=
+        fmt::format("{},{}", unknown ? std::numeric_limits<double>::quiet_NaN() : found.distance(j), found.error(j));
+    if (arguments.directions) {
+      lines += fmt::format(",{}{}{}", found.source[i], columns(found.departure, j), columns(found.arrival, j));
     }
-    if (result.points.cols() > 0) {
-      std::cout << fmt::format("{},{}\n", result.length, result.length_error);
-    } else {
-      std::cout << "nan,inf\n";
+    lines += '\n';
+  }
+  std::cout << lines;
+  const auto by_path = std::ranges::count(found.proof, DistanceProof::path);
+  if (solver.has_fan() && by_path > 0) {
+    context.tell(
+        fmt::format("{} of {} distances are the shortest of corrected paths: not all geodesics could be "
+                    "followed as far (creases, singular points, or the budget)",
+                    grouped(by_path), grouped(at.cols())));
+  }
+  return errors.any() ? kSomeLinesFailed : kDone;
+}
+
+/// Distances are numbers a vertex, which some formats have no room for.
+void tell_lost_distances(const std::vector<std::string>& files, const Context& context) {
+  for (const std::string& file : files) {
+    for (const char* extension : {".obj", ".off", ".stl"}) {
+      if (!file.ends_with(extension)) continue;
+      context.tell(fmt::format("{}: holds the surface without its distances; .vtp and .ply hold both", file));
     }
   }
-  return all_ok ? kDone : kSomeLinesFailed;
+}
+
+/// "8" = so many at equal steps; "0.5,1" = these.
+std::vector<double> parse_levels(const std::string& text, const Vector& values) {
+  std::vector<double> levels;
+  const Vector numbers = parse_numbers(text, "--isolines");
+  const double first = numbers(0);
+  constexpr int kMost = 1000;
+  if (numbers.size() == 1 && text.find_first_of(".e") == std::string::npos && first >= 1 && first <= kMost) {
+    return even_levels(values, static_cast<int>(first));
+  }
+  for (const double level : numbers) levels.push_back(level);
+  return levels;
+}
+
+/// Puts exact distances in the place of marched ones at the vertices, as far as all geodesics can be followed, and the
+/// estimated errors beside them (NaN = marched). Returns how many.
+Index make_exact(DistanceSolver& solver, SurfaceMesh& mesh) {
+  const Distances exact = solver.at(mesh.vertices);
+  VertexScalar error{"error", Vector::Constant(mesh.vertices.cols(), std::numeric_limits<double>::quiet_NaN())};
+  Index count = 0;
+  for (Index v = 0; v < mesh.vertices.cols(); ++v) {
+    const auto i = static_cast<std::size_t>(v);
+    if (exact.proof[i] == DistanceProof::fan) {
+      mesh.scalars.front().values(v) = exact.distance(v);
+      error.values(v) = exact.error(v);
+      ++count;
+    } else if (exact.status[i] == Status::ok || exact.status[i] == Status::disconnected) {
+      mesh.scalars.front().values(v) = std::numeric_limits<double>::quiet_NaN();  // beyond --max-distance, or apart
+    }
+  }
+  mesh.scalars.push_back(std::move(error));
+  return count;
 }
 
 ExitCode run(FieldArguments arguments, const CLI::App& command) {
@@ -85,10 +162,23 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
     throw UsageError(
         "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
   }
+  if (!arguments.at.empty() && (arguments.grid_only || !arguments.isolines.empty())) {
+    throw UsageError("--grid-only and --isolines go with --out, not with --at");
+  }
   if (arguments.at.empty())
-    refuse_without_effect(command, {"--tol"}, "it is for --at, distances to everywhere are marched");
+    refuse_without_effect(command, {"--directions", "--header"}, "it is for distances --at points");
+  if (arguments.grid_only && std::isfinite(arguments.max_distance)) {
+    throw UsageError("--max-distance bounds exact distances, not those of --grid-only");
+  }
+  if (!arguments.at.empty()) {
+    refuse_without_effect(command, {"--march", "--envelope"}, "distances --at points are exact, not marched");
+  } else if (command.count("--march") + command.count("--envelope") > 0) {
+    arguments.grid_only = true;  // asked for by name: what that march says, nothing better
+  }
+  if (arguments.grid_only) refuse_without_effect(command, {"--tol"}, "marched distances are as exact as the cells");
+  refuse_to_overwrite({arguments.surface.surface, arguments.at}, arguments.files.out);
   check_envelope_usage(arguments.options.march, arguments.options.envelope);
-  arguments.files.check(OutputKind::mesh);
+  arguments.files.check(arguments.isolines.empty() ? OutputKind::mesh : OutputKind::path);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   arguments.options.seeds = read_seeds(arguments.surface, surface, arguments.options.grid, context);
@@ -100,7 +190,18 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
                     "equation{}; use --at POINTS.csv",
                     surface.dim(), surface.codim(), surface.codim() == 1 ? "" : "s"));
   }
-  const FieldResult field = marched_field(surface, sources, arguments.options, context);
+  tell_lost_distances(arguments.files.out, context);
+  FieldResult field = marched_field(surface, sources, arguments.options, context);
+  DistanceSolver solver(surface, sources, {}, arguments.distance_options(false), context);
+  const bool exact = !arguments.grid_only && solver.has_fan();
+  const Index num_exact = exact ? make_exact(solver, field.mesh) : 0;
+  std::optional<Polylines> isolines;
+  if (!arguments.isolines.empty()) {
+    const Vector& values = field.mesh.scalars.front().values;
+    const std::vector<double> levels = parse_levels(arguments.isolines, values);
+    isolines =
+        exact ? distance_isolines(solver, field.mesh, values, levels) : trace_isolines(field.mesh, values, levels);
+  }
   clear_progress();
   const Vector& distance = field.mesh.scalars.front().values;
   Index reached = 0;
@@ -110,12 +211,16 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
     ++reached;
     farthest = std::max(farthest, u);
   }
+  tell_of_ignored_faces(surface, farthest, context);
   const std::vector<SceneFact> facts = {
       {"cells", cells_text(field.num_cells, field.cell, field.num_layers)},
       {"reached", fmt::format("{} of {} vertices", grouped(reached), grouped(distance.size()))},
-      {"farthest", fmt::format("{:.6g}", farthest)}};
+      {"farthest", fmt::format("{:.6g}", farthest)},
+      {"exact", exact ? fmt::format("{} of {} vertices", grouped(num_exact), grouped(distance.size()))
+                      : std::string("none: marched distances")}};
   write_mesh_files(arguments.files, {.surface = surface,
                                      .mesh = field.mesh,
+                                     .isolines = isolines,
                                      .marks = sources,
                                      .facts = facts,
                                      .title = "Distances on " + picture_title(arguments.surface.surface)});
@@ -132,14 +237,25 @@ Run add_field_command(CLI::App& app) {
   command.add_option("--from", arguments->from, "a source: 1,0,0 or @17 (repeatable: the nearest one counts)")
       ->required()
       ->allow_extra_args(false);
-  command.add_option("--at", arguments->at, "points, one a line: writes distance,error for each, exact to --tol");
-  command.add_option("--tol", arguments->tolerance, "relative tolerance of distances --at points")
-      ->check(number_between(1e-13, 1e-3))
-      ->capture_default_str();
+  command.add_option("--at", arguments->at,
+                     "points, one a line, - = stdin: writes distance,error for each, exact to --tol");
+  command.add_flag("--directions", arguments->directions,
+                   "with --at: also the number of the nearest source (from 0), and the unit directions in which the "
+                   "geodesic leaves it and arrives");
+  command.add_option("--max-distance", arguments->max_distance, "leave out what is farther away")
+      ->check(positive_number());
+  command.add_flag("--grid-only", arguments->grid_only,
+                   "with --out: marched distances, as exact as the cells (so do --march and --envelope)");
+  command.add_option("--isolines", arguments->isolines,
+                     "lines of equal distance: how many, or their distances (0.5,1,2). Pictures show them on the "
+                     "surface, other files hold them alone");
+  command.add_option("--tol", arguments->tolerance, "relative tolerance of exact distances (default: 1e-9)")
+      ->check(number_between(1e-13, 1e-3));
+  command.add_flag("--header", arguments->header, "with --at: a first line with the columns' names");
   add_cell_options(command, arguments->options.cell, arguments->options.grid);
   add_march_option(command, arguments->options.march);
   add_envelope_option(command, arguments->options.envelope);
-  arguments->files.add_to(command, OutputKind::mesh, "the surface with marched distances,");
+  arguments->files.add_to(command, OutputKind::mesh, "the surface with its distances, or the isolines,");
   arguments->common.add_to(command);
   return [arguments, &command] { return run(*arguments, command); };
 }

@@ -210,6 +210,22 @@ class PathScene {
   std::size_t num_paths_ = 0;
 };
 
+/// Isolines as thin lines.
+SceneLines scene_lines(const Polylines& lines) {
+  SceneLines result{.vertices = Points(3, lines.num_points()), .segments = {}, .name = "isolines"};
+  result.segments.resize(2, lines.num_points() - static_cast<Index>(lines.lines.size()));
+  Index vertex = 0;
+  Index segment = 0;
+  for (const Points& line : lines.lines) {
+    result.vertices.middleCols(vertex, line.cols()) = line;
+    for (Index i = 0; i + 1 < line.cols(); ++i) {
+      result.segments.col(segment++) << static_cast<int>(vertex + i), static_cast<int>(vertex + i + 1);
+    }
+    vertex += line.cols();
+  }
+  return result;
+}
+
 }  // namespace
 
 CLI::Option* FileArguments::add_to(CLI::App& command, OutputKind kind, const std::string& what) {
@@ -320,7 +336,11 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
   for (const std::string& file : files.out) {
     const std::string extension = extension_of(file);
     if (!is_picture(extension)) {
-      write_mesh(file, output.mesh);
+      if (output.isolines) {
+        write_polylines(file, *output.isolines);
+      } else {
+        write_mesh(file, output.mesh);
+      }
       continue;
     }
     if (!scene) {
@@ -331,6 +351,7 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       scene->towards_viewer = files.towards_viewer();
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
+      if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines));
       for (Index j = 0; j < output.marks.cols(); ++j) {
         scene->points.push_back({.position = output.marks.col(j), .label = "source"});
       }

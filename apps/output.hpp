@@ -2,6 +2,7 @@
 
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,12 +76,14 @@ void write_json_files(const FileArguments& files, const nlohmann::ordered_json& 
 struct MeshOutput {
   const Surface& surface;
   const TriangleMesh& mesh;
-  Points marks;  ///< 3 x m: points to show, such as the sources of a field
+  std::optional<Polylines> isolines = {};  ///< drawn on the mesh in pictures; other files hold them instead of it
+  Points marks;                            ///< 3 x m: points to show, such as the sources of a field
   std::vector<SceneFact> facts;
   std::string title;
 };
 
-/// Writes the mesh, with its vertex scalars where the format has room for them, to each file, by extension.
+/// Writes the mesh, with its vertex scalars where the format has room for them, or its isolines, to each file, by
+/// extension.
 void write_mesh_files(const FileArguments& files, const MeshOutput& output);
 
 }  // namespace taut::app

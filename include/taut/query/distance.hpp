@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "taut/core/context.hpp"
+#include "taut/core/status.hpp"
+#include "taut/query/path.hpp"
+#include "taut/surface/surface.hpp"
+
+namespace taut {
+
+struct DistanceOptions {
+  /// Relative tolerance of distances, 1e-13 .. 1e-3.
+  double tolerance = 1e-9;
+  /// Targets that lie farther away are not looked for, model units, > 0.
+  double max_distance = std::numeric_limits<double>::infinity();
+  GridMethod grid = GridMethod::automatic;
+  double cell = 0;                              ///< grid cell size h, model units; 0 = chosen
+  MarchMethod march = MarchMethod::convergent;  ///< how starts of corrected paths are found
+  /// Panels that a geodesic fan may have; see FanOptions.
+  Index max_patches = 60000;
+  /// Correct a path to each target that the fan does not answer. False: such a target is not_converged.
+  bool paths = true;
+};
+
+/// How a distance was found.
+enum class DistanceProof : std::uint8_t {
+  none,  ///< there is none: see its status
+  path,  ///< a corrected path, the shortest of those that were found
+  fan,   ///< the shortest of all geodesics from the sources, which were followed in every direction at least as far
+};
+
+/// Distances of n targets from the nearest of several sources.
+struct Distances {
+  Vector distance;                   ///< n, model units; infinity where there is none or beyond `max_distance`
+  Vector error;                      ///< n: estimated error of `distance`, model units; infinity where there is none
+  std::vector<Status> status;        ///< n: ok, disconnected, ...; ok beyond `max_distance`
+  std::vector<DistanceProof> proof;  ///< n
+  std::vector<std::int32_t> source;  ///< n: column of the nearest source; -1 where there is none
+  Points departure;                  ///< d x n: unit tangent at the source, NaN where there is none
+  Points arrival;  ///< d x n: unit tangent at the target, direction of travel, NaN where there is none
+  std::map<Index, std::string> message;  ///< why a target has no distance, in one sentence
+};
+
+/// Distances from one or several sources to any number of targets. On surfaces in R^3 all geodesics from the sources
+/// are followed (GeodesicFan) as far as the targets asked about lie, which is kept for the next question; the least
+/// length is the distance. Where rays cannot be followed (creases, borders, singular points) and in other dimensions
+/// it is a corrected path to each target (PathSolver). Not safe to share between threads.
+class DistanceSolver {
+ public:
+  /// `sources` (d x m) are projected onto the surface as PathSolver does it; `values` (m, model units; empty = zeros)
+  /// are the distances there. Throws InvalidArgument for a wrong shape, options out of range and sources off the
+  /// surface, SingularPoint for singular ones.
+  DistanceSolver(Surface surface, const PointsIn& sources, const Vector& values = {},
+                 const DistanceOptions& options = {}, Context context = {});
+  ~DistanceSolver();
+  DistanceSolver(DistanceSolver&&) noexcept;
+  DistanceSolver& operator=(DistanceSolver&&) noexcept;
+
+  /// Of `targets` (d x n, projected onto the surface), on all cores. A target that cannot be answered carries its
+  /// status and message. Throws InvalidArgument for a wrong shape, Cancelled, EmptySurface, OutOfMemory.
+  /// Properties the tests check: 0 at a source (of value 0); |u(x) - u(y)| <= d(x, y); the minimum over the single
+  /// sources; the same from the other end; the same bits for any number of threads.
+  [[nodiscard]] Distances at(const PointsIn& targets);
+
+  [[nodiscard]] const Surface& surface() const;
+  [[nodiscard]] const Points& sources() const;  ///< d x m, on the surface
+  /// Are rays followed at all: surfaces in R^3 without a domain.
+  [[nodiscard]] bool has_fan() const;
+  [[nodiscard]] Index num_patches() const;  ///< of the fan so far
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace taut

@@ -1,0 +1,153 @@
+#include "taut/query/distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/surfaces.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/formula.hpp"
+#include "taut/surface/projection.hpp"
+
+namespace taut {
+namespace {
+
+using std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Points random_points(const Surface& surface, Index n, double extent, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-extent, extent);
+  Points points(surface.dim(), n);
+  for (Index j = 0; j < n;) {
+    for (double& x : points.col(j)) x = uniform(random);
+    const ProjectionResult projected = project_to_surface(surface, points.col(j), {.max_distance = extent / 5});
+    if (projected.converged && surface.inside_domain(projected.point)(0)) points.col(j++) = projected.point;
+  }
+  return points;
+}
+
+/// Two ways to the same number that share no code: all geodesics from the source, and a corrected path to each target.
+TEST(DistanceSolver, AgreesWithCorrectedPaths) {
+  for (const std::string formula : {"(x^2+y^2+z^2+1-0.1^2)^2-4*(x^2+y^2)", "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8",
+                                    "2y*(y^2-3x^2)*(1-z^2)+(x^2+y^2)^2-(9z^2-1)*(1-z^2)", "x^2+y^2+25z^2=1"}) {
+    const Surface surface = parse_surface(formula);
+    const double extent = formula.starts_with("x^4") ? 2.4 : 1.1;
+    const Points points = random_points(surface, 9, extent, 1);
+    const Points targets = points.rightCols(8);
+    DistanceSolver solver(surface, points.leftCols(1));
+    const Distances found = solver.at(targets);
+    const std::vector<PathResult> paths = PathSolver(surface).solve_from(points.col(0), targets);
+    for (Index j = 0; j < targets.cols(); ++j) {
+      const std::size_t i = static_cast<std::size_t>(j);
+      ASSERT_EQ(found.status[i], Status::ok) << formula;
+      EXPECT_EQ(found.proof[i], DistanceProof::fan) << formula;
+      EXPECT_LE(found.distance(j), paths[i].length * (1 + 1e-9)) << formula;  // a path is never shorter
+      EXPECT_NEAR(found.distance(j), paths[i].length, 1e-9 * paths[i].length) << formula;
+      EXPECT_GE(found.distance(j), (targets.col(j) - points.col(0)).norm());
+    }
+  }
+}
+
+/// From all corners of a mesh of the surface the distance is 1-Lipschitz along every edge, and nowhere NaN.
+TEST(DistanceSolver, IsOneLipschitz) {
+  const Surface surface = test::torus(1, 0.4);
+  Points sources(3, 2);
+  sources << 1.4, -0.6, 0, 0, 0, 0;
+  DistanceSolver solver(surface, sources);
+  const Points targets = random_points(surface, 400, 1.4, 2);
+  const Distances u = solver.at(targets);
+  EXPECT_TRUE(u.distance.allFinite());
+  for (Index i = 0; i < targets.cols(); i += 7) {
+    const Distances between = DistanceSolver(surface, targets.col(i)).at(targets);
+    for (Index j = 0; j < targets.cols(); ++j) {
+      EXPECT_LE(std::abs(u.distance(i) - u.distance(j)), between.distance(j) + 1e-10);
+    }
+  }
+}
+
+TEST(DistanceSolver, KeepsItsFanForTheNextQuestion) {
+  DistanceSolver solver(test::unit_sphere(), Vector(Eigen::Vector3d(1, 0, 0)));
+  const auto at_angle = [&](double angle) {
+    return solver.at(Vector(Eigen::Vector3d(std::cos(angle), std::sin(angle), 0))).distance(0);
+  };
+  EXPECT_NEAR(at_angle(0.3), 0.3, 1e-12);
+  const Index few = solver.num_patches();
+  EXPECT_NEAR(at_angle(3.1), 3.1, 1e-12);
+  const Index all = solver.num_patches();
+  EXPECT_LT(few, all);
+  EXPECT_NEAR(at_angle(2), 2, 1e-12);
+  EXPECT_EQ(solver.num_patches(), all);
+}
+
+TEST(DistanceSolver, ProvesThatPointsLieApart) {
+  const Surface two = parse_surface("((x-2)^2+y^2+z^2-1)*((x+2)^2+y^2+z^2-1)");
+  Points targets(3, 2);
+  targets << 1, -1, 0, 0, 0, 0;
+  const Distances found = DistanceSolver(two, Vector(Eigen::Vector3d(3, 0, 0))).at(targets);
+  EXPECT_EQ(found.status[0], Status::ok);
+  EXPECT_NEAR(found.distance(0), pi, 1e-11);
+  EXPECT_EQ(found.status[1], Status::disconnected);
+  EXPECT_EQ(found.distance(1), kInfinity);
+  EXPECT_TRUE(found.message.contains(1));
+}
+
+TEST(DistanceSolver, SpeaksOfEachBadTargetAndAnswersTheOthers) {
+  Points targets(3, 3);
+  targets << 0, std::numeric_limits<double>::quiet_NaN(), 9, 1, 0, 9, 0, 0, 9;
+  const Distances found = DistanceSolver(test::unit_sphere(), Vector(Eigen::Vector3d(1, 0, 0))).at(targets);
+  EXPECT_NEAR(found.distance(0), pi / 2, 1e-12);
+  for (const Index j : {1, 2}) {
+    EXPECT_NE(found.status[static_cast<std::size_t>(j)], Status::ok);
+    EXPECT_EQ(found.distance(j), kInfinity);
+    EXPECT_TRUE(found.message.contains(j));
+  }
+}
+
+TEST(DistanceSolver, LeavesOutWhatIsFartherThanAsked) {
+  Points targets(3, 2);
+  targets << 0.8, 0, 0.6, 1, 0, 0;
+  const Distances found =
+      DistanceSolver(test::unit_sphere(), Vector(Eigen::Vector3d(1, 0, 0)), {}, {.max_distance = 1}).at(targets);
+  EXPECT_NEAR(found.distance(0), std::atan2(0.6, 0.8), 1e-12);
+  EXPECT_EQ(found.distance(1), kInfinity);
+  EXPECT_EQ(found.status[1], Status::ok);
+}
+
+/// Beyond a crease rays are not followed: a corrected path to each target takes over, or says that it cannot.
+TEST(DistanceSolver, FallsBackOnPathsInMoreDimensionsAndInsideDomains) {
+  const Surface sphere = test::unit_sphere(4);
+  const Points points = random_points(sphere, 4, 1, 3);
+  const Distances on_sphere = DistanceSolver(sphere, points.col(0)).at(points);
+  for (Index j = 0; j < 4; ++j) {
+    const double chord = (points.col(j) - points.col(0)).norm();
+    EXPECT_NEAR(on_sphere.distance(j), 2 * std::asin(std::min(1.0, chord / 2)), 1e-9);
+  }
+  const Surface half = parse_surface("x^2+y^2+z^2=1", {.domain = {"z >= 0"}});
+  const Distances on_half =
+      DistanceSolver(half, Vector(Eigen::Vector3d(0.8, 0, 0.6))).at(Vector(Eigen::Vector3d(0, 0.8, 0.6)));
+  EXPECT_NEAR(on_half.distance(0), std::acos(0.36), 1e-9);
+  EXPECT_EQ(on_half.proof[0], DistanceProof::path);
+}
+
+TEST(DistanceSolver, RefusesWrongRequests) {
+  const Surface sphere = test::unit_sphere();
+  const Vector p = Eigen::Vector3d(1, 0, 0);
+  EXPECT_THROW(DistanceSolver(sphere, Points(3, 0)), InvalidArgument);
+  EXPECT_THROW(DistanceSolver(sphere, Vector(Eigen::Vector2d(1, 0))), InvalidArgument);
+  EXPECT_THROW(DistanceSolver(sphere, Vector(9 * p)), InvalidArgument);
+  EXPECT_THROW(DistanceSolver(sphere, p, Vector::Zero(2)), InvalidArgument);
+  EXPECT_THROW(DistanceSolver(sphere, p, {}, {.tolerance = 1}), InvalidArgument);
+  EXPECT_THROW(DistanceSolver(sphere, p, {}, {.max_distance = 0}), InvalidArgument);
+  DistanceSolver solver(sphere, p);
+  EXPECT_THROW((void)solver.at(Points::Zero(2, 1)), InvalidArgument);
+}
+
+}  // namespace
+}  // namespace taut
