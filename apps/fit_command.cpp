@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <variant>
+#include <vector>
 
 #include "commands.hpp"
 #include "load_surface.hpp"
@@ -19,23 +21,16 @@ namespace {
 struct FitArguments {
   CommonArguments common;
   std::string cloud;
-  RbfOptions options;
+  FitOptions options;
   std::string out;
 };
 
-ExitCode run(const FitArguments& arguments) {
-  if (!arguments.out.ends_with(".taut")) {
-    throw UsageError("--out " + arguments.out + ": a model file ends in .taut");
-  }
-  const Context context = terminal_context(arguments.common.terminal);
-  const RbfModel model = fit_file(arguments.cloud, arguments.options, context);
-  write_model(arguments.out, model);
-  clear_progress();
+std::vector<SceneFact> kind_facts(const RbfModel& model) {
   const RbfReport& report = model.report;
   std::vector<SceneFact> facts = {
+      {"kind", fmt::format("dense: one system of {} centres", grouped(model.centres.cols()))},
       {"samples", fmt::format("{}, {} of them fitted {:.3g} apart", grouped(model.samples.size()),
                               grouped(report.num_fitted), report.spacing)},
-      {"centres", grouped(model.centres.cols())},
       {"noise", fmt::format("{:.2e}, smoothing length {:.3g}", report.noise, report.smoothing)}};
   if (report.num_fitted < report.num_samples) {
     facts.push_back({"left out", fmt::format("samples lie {:.2e} (rms), {:.2e} (most) off the surface",
@@ -43,7 +38,36 @@ ExitCode run(const FitArguments& arguments) {
   }
   facts.push_back({"ends", model.support_radius > 0 ? fmt::format("{:.3g} from the samples", model.support_radius)
                                                     : std::string("nowhere: the surface is closed")});
-  std::cout << facts_text(facts);
+  return facts;
+}
+
+std::vector<SceneFact> kind_facts(const LocalFitModel& model) {
+  const LocalFitReport& report = model.report;
+  return {
+      {"kind",
+       fmt::format("local: {} patches of some {} samples", grouped(model.radii.size()), report.samples_per_patch)},
+      {"samples", fmt::format("{}, {:.3g} apart", grouped(model.samples.size()), report.spacing)},
+      {"noise", fmt::format("{:.2e}", report.noise)},
+      {"ends", fmt::format("{:.3g} to {:.3g} from the samples", model.support.minCoeff(), model.support.maxCoeff())}};
+}
+
+ExitCode run(const FitArguments& arguments) {
+  if (!arguments.out.ends_with(".taut")) {
+    throw UsageError("--out " + arguments.out + ": a model file ends in .taut");
+  }
+  const Context context = terminal_context(arguments.common.terminal);
+  const FitModel model = fit_file(arguments.cloud, arguments.options, context);
+  write_model(arguments.out, model);
+  clear_progress();
+  std::visit(
+      [](const auto& kind) {
+        std::vector<SceneFact> facts = kind_facts(kind);
+        facts.push_back(
+            {"residual", fmt::format("the surface stands {:.2e} (rms) off the samples, {:.2e} (most) at @{}",
+                                     kind.report.residual_rms, kind.report.residual_max, kind.report.residual_at)});
+        std::cout << facts_text(facts);
+      },
+      model);
   return kDone;
 }
 

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "checks.hpp"
+#include "formula_argument.hpp"
+#include "input_files.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
@@ -16,52 +18,60 @@
 #include "taut/io/read_point_cloud.hpp"
 #include "taut/io/read_points.hpp"
 #include "taut/io/read_volume.hpp"
-#include "taut/surface/formula.hpp"
 
 namespace taut::app {
 namespace {
 
-FormulaOptions formula_options(const SurfaceArguments& arguments) {
-  FormulaOptions options;
-  options.dim = arguments.dim;
-  options.domain = arguments.domain;
-  for (const std::string& text : arguments.parameters) {
-    const std::size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw UsageError("--set " + text + ": write NAME=VALUE, as in --set R=1.5");
-    }
-    const std::string name = text.substr(0, equals);
-    const Vector value = parse_numbers(text.substr(equals + 1), "--set " + name);
-    if (value.size() != 1) throw UsageError("--set " + text + ": give one value");
-    options.parameters[name] = value(0);
+/// Options that say nothing about such a surface are mistakes, not wishes. `given` pairs each with its name.
+void refuse_options(const std::vector<std::pair<bool, const char*>>& given, const std::string& surface,
+                    const char* rule) {
+  for (const auto& [is_given, option] : given) {
+    if (is_given) throw UsageError(fmt::format("{} is for {}", option, fmt::format(fmt::runtime(rule), surface)));
   }
-  return options;
+}
+
+std::vector<std::pair<bool, const char*>> fit_options(const FitOptions& options) {
+  return {{options.method != FitMethod::automatic, "--fit"},
+          {options.smoothing.has_value(), "--smooth"},
+          {options.max_samples != 0, "--samples-max"},
+          {options.support_radius != 0, "--support"}};
+}
+
+std::vector<std::pair<bool, const char*>> volume_options(const VolumeArguments& volume) {
+  return {{volume.given() != nullptr, volume.given()}};
 }
 
 Surface load_file(const SurfaceArguments& arguments, const Context& context) {
-  if (arguments.surface.ends_with(".vm")) {
-    if (const char* option = arguments.volume.given()) {
-      throw UsageError(fmt::format("{} is for volumes; {} is a clause file", option, arguments.surface));
-    }
-    return read_clauses(arguments.surface, formula_options(arguments), context);
+  const std::string& file = arguments.surface;
+  if (file.ends_with(".vm")) {
+    refuse_options(volume_options(arguments.volume), file, "volumes; {} is a clause file");
+    refuse_options(fit_options(arguments.fit), file, "point files; {} is a clause file");
+    return read_clauses(file, formula_options(arguments), context);
   }
-  for (const auto& [given, option] :
-       {std::pair{!arguments.parameters.empty(), "--set"}, std::pair{!arguments.domain.empty(), "--domain"},
-        std::pair{arguments.dim.has_value(), "--dim"}}) {
-    if (given) throw UsageError(fmt::format("{} is for formulas; {} is a file", option, arguments.surface));
+  refuse_options({{!arguments.parameters.empty(), "--set"},
+                  {!arguments.variables.empty(), "--vars"},
+                  {!arguments.domain.empty(), "--domain"}},
+                 file, "formulas; {} is a file");
+  if (is_volume_file(file)) {
+    refuse_options({{arguments.dim.has_value(), "--dim"}}, file, "formulas and point files; {} is a volume");
+    FitOptions others = arguments.fit;
+    others.smoothing.reset();  // --smooth is for volumes, too
+    refuse_options(fit_options(others), file, "point files; {} is a volume");
+    return load_volume(file, arguments.volume, arguments.fit.smoothing, context);
   }
-  if (is_volume_file(arguments.surface)) {
-    if (arguments.rbf.max_samples != RbfOptions().max_samples) throw UsageError("--samples-max is for point clouds");
-    if (arguments.rbf.support_radius != RbfOptions().support_radius) throw UsageError("--support is for point clouds");
-    return load_volume(arguments.surface, arguments.volume, arguments.rbf.smoothing, context);
+  refuse_options(volume_options(arguments.volume), file, "volumes; {} is none");
+  if (file.ends_with(".taut")) {
+    refuse_options({{arguments.dim.has_value(), "--dim"}}, file, "formulas and point files; {} is a model");
+    refuse_options(fit_options(arguments.fit), file, "point files; {} is fitted already");
+    return make_surface(read_model(file));
   }
-  if (const char* option = arguments.volume.given()) {
-    throw UsageError(fmt::format("{} is for volumes; {} is none", option, arguments.surface));
-  }
-  if (arguments.surface.ends_with(".taut")) {
-    return make_surface(std::make_shared<const RbfModel>(read_model(arguments.surface)));
-  }
-  return make_surface(std::make_shared<const RbfModel>(fit_file(arguments.surface, arguments.rbf, context)));
+  return make_surface(fit_file(file, arguments.fit, context, arguments.dim));
+}
+
+Surface load_formula(const SurfaceArguments& arguments) {
+  refuse_options(volume_options(arguments.volume), arguments.surface, "volumes; '{}' is a formula");
+  refuse_options(fit_options(arguments.fit), arguments.surface, "point files; '{}' is a formula");
+  return read_formula(arguments);
 }
 
 /// The surface with points on it to start paths from, where there are no cells.
@@ -70,7 +80,7 @@ Surface with_samples(const Surface& surface, const std::string& file, const Cont
   if (surface.samples() != nullptr) throw UsageError("--samples is for formulas; a cloud brings its own");
   if (surface.dim() <= kMostDimensionsOfCells) return surface;  // read_seeds
   PointCloud cloud;
-  cloud.points = read_points(file, surface.dim(), context);
+  cloud.points = read_points(file_or_stdin(file), surface.dim(), context);
   return surface.with_samples(std::make_shared<const PointCloud>(std::move(cloud)));
 }
 
@@ -78,12 +88,16 @@ Surface with_samples(const Surface& surface, const std::string& file, const Cont
 
 void SurfaceArguments::add_to(CLI::App& command) {
   command
-      .add_option(
-          "SURFACE", surface,
-          "a formula such as 'x^2+y^2+4z^2=1', a point cloud, mesh, volume or clause (.vm) file, or a .taut model")
+      .add_option("SURFACE", surface,
+                  "a formula such as 'x^2+y^2+4z^2=1' or @FILE that holds one, a point cloud, mesh, volume or clause "
+                  "(.vm) file, or a .taut model")
       ->required();
-  command.add_option("--dim", dim, "dimension of a formula's space (default: its largest variable)")
+  command
+      .add_option("--dim", dim,
+                  "dimension of a formula's space (default: its largest variable), or how many columns of a table "
+                  "without a header are coordinates")
       ->check(whole_number(2, 65535));
+  command.add_option("--vars", variables, "the formula's variables in place of x y z w or x1 x2 ..., as in theta,phi");
   command.add_option("--set", parameters, "a parameter of the formula, NAME=VALUE (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
@@ -92,17 +106,22 @@ void SurfaceArguments::add_to(CLI::App& command) {
                      "points on or near a formula's surface: what --grid grow starts from; in more than 6 dimensions, "
                      "what paths start from");
   command.add_option("--box", box, "where to look: LO,HI or X0,X1,Y0,Y1,... (default: found)");
-  add_fit_options(command, rbf);
+  add_fit_options(command, fit);
   volume.add_to(command);
 }
 
-void add_fit_options(CLI::App& command, RbfOptions& options) {
+void add_fit_options(CLI::App& command, FitOptions& options) {
+  command
+      .add_option("--fit", options.method,
+                  "dense: one system, of at most 2,500 samples; local: small patches, of all (default: by size)")
+      ->transform(one_of<FitMethod>({{"dense", FitMethod::dense}, {"local", FitMethod::local}}))
+      ->group("Fitting a cloud");
   command
       .add_option("--smooth", options.smoothing,
                   "smoothing of the fit; 0 passes through every sample. Of a volume: voxels")
       ->check(number_not_below_zero())
       ->group("Fitting a cloud");
-  command.add_option("--samples-max", options.max_samples, "fit at most this many well-spread samples")
+  command.add_option("--samples-max", options.max_samples, "dense: fit at most this many well-spread samples")
       ->check(whole_number(10, 20000))
       ->group("Fitting a cloud");
   command
@@ -111,16 +130,29 @@ void add_fit_options(CLI::App& command, RbfOptions& options) {
       ->group("Fitting a cloud");
 }
 
-RbfModel fit_file(const std::string& path, const RbfOptions& options, const Context& context) {
-  const PointCloud cloud = read_point_cloud(path, context);
+FitModel fit_file(const std::string& path, const FitOptions& options, const Context& context,
+                  std::optional<Index> dim) {
+  if (options.method == FitMethod::local && options.max_samples > 0) {
+    throw UsageError("--samples-max is for --fit dense: a local fit takes every sample");
+  }
+  if (options.method == FitMethod::local && options.support_radius < 0) {
+    throw UsageError("--support -1 is for --fit dense: a local fit ends with its samples");
+  }
+  PointCloud cloud;
   try {
-    return fit_rbf(cloud, options, context);
+    cloud = read_point_cloud(path, context, dim);
+  } catch (const UnnamedColumns& error) {
+    throw InvalidArgument(std::string(error.what()) + ", or give --dim 3 to take the first three");
+  }
+  try {
+    return fit_surface(cloud, options, context);
   } catch (const InvalidArgument& error) {
     throw IoError(path, error.what());
   }
 }
 
 bool names_a_file(const std::string& surface) {
+  if (surface.starts_with('@')) return false;  // a formula in a file
   std::error_code ignored;
   if (std::filesystem::exists(surface, ignored)) return true;
   // A path that does not exist must be called that, rather than be read as a formula with odd variables.
@@ -132,11 +164,10 @@ bool names_a_file(const std::string& surface) {
 }
 
 Surface load_surface(const SurfaceArguments& arguments, const Context& context) {
-  if (const char* option = arguments.volume.given(); option != nullptr && !names_a_file(arguments.surface)) {
-    throw UsageError(fmt::format("{} is for volumes; '{}' is a formula", option, arguments.surface));
+  if (arguments.surface == "-") {
+    throw UsageError("SURFACE -: a surface is not read from standard input; write it to a file first");
   }
-  Surface surface = names_a_file(arguments.surface) ? load_file(arguments, context)
-                                                    : parse_surface(arguments.surface, formula_options(arguments));
+  Surface surface = names_a_file(arguments.surface) ? load_file(arguments, context) : load_formula(arguments);
   if (!arguments.samples.empty()) surface = with_samples(surface, arguments.samples, context);
   return arguments.box.empty() ? surface : surface.with_box(parse_box(arguments.box, surface.dim()));
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "taut/core/context.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/surface.hpp"
 #include "volume_argument.hpp"
 
@@ -16,21 +16,23 @@ namespace taut::app {
 struct SurfaceArguments {
   std::string surface;
   std::optional<Index> dim;
+  std::string variables;  // "theta,phi"
   std::vector<std::string> parameters;
   std::vector<std::string> domain;
   std::string box;
   std::string samples;  // file
-  RbfOptions rbf;
+  FitOptions fit;
   VolumeArguments volume;
 
   void add_to(CLI::App& command);
 };
 
-/// --smooth, --samples-max and --support: how a cloud is fitted.
-void add_fit_options(CLI::App& command, RbfOptions& options);
+/// --fit, --smooth, --samples-max and --support: how a cloud is fitted.
+void add_fit_options(CLI::App& command, FitOptions& options);
 
 /// Reads a cloud and fits it. What is wrong with the points names the file, as an IoError.
-[[nodiscard]] RbfModel fit_file(const std::string& path, const RbfOptions& options, const Context& context);
+[[nodiscard]] FitModel fit_file(const std::string& path, const FitOptions& options, const Context& context,
+                                std::optional<Index> dim = {});
 
 /// The surface, from a formula, a point cloud (fitted), a volume or a `.taut` model. Throws what the readers throw.
 [[nodiscard]] Surface load_surface(const SurfaceArguments& arguments, const Context& context);

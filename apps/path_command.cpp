@@ -10,13 +10,16 @@
 #include <memory>
 #include <vector>
 
+#include "batch_errors.hpp"
 #include "cell_arguments.hpp"
 #include "checks.hpp"
 #include "commands.hpp"
 #include "deliver_path.hpp"
+#include "input_files.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
 #include "path_class.hpp"
+#include "path_lines.hpp"
 #include "path_pairs.hpp"
 #include "path_sources.hpp"
 #include "path_via.hpp"
@@ -45,6 +48,9 @@ struct PathArguments {
   PathShow show;
   bool verify = false;
   std::vector<const CLI::Option*> of_the_flow;  // without effect on other methods
+  BatchColumns columns;
+  bool header = false;
+  Index samples_along = 0;
 };
 
 /// Follows the path from its start as a ray and reports where it lands.
@@ -69,6 +75,14 @@ void add_verification(const Surface& surface, const PathResult& result, const Co
                              found.miss, std::abs(found.miss_along), found.amplification, to_string(found.status))});
 }
 
+/// The JSON of a path, its points as --samples-along wants them.
+nlohmann::ordered_json json_of(const PathArguments& arguments, const Surface& surface, const PathResult& result,
+                               double surface_seconds, double total_seconds) {
+  auto json = path_json(surface, result, arguments.options, surface_seconds, total_seconds);
+  space_points(surface, result, arguments.samples_along, json);
+  return json;
+}
+
 PathOutput output_of(const PathArguments& arguments, const Surface& surface, const PathResult& result,
                      const nlohmann::ordered_json& json, const std::vector<SceneFact>& facts) {
   return {.surface = surface,
@@ -78,7 +92,8 @@ PathOutput output_of(const PathArguments& arguments, const Surface& surface, con
           .title = picture_title(arguments.surface.surface),
           .show = arguments.show,
           .field = field_options(arguments.options),
-          .all_ways = arguments.options.all};
+          .all_ways = arguments.options.all,
+          .evenly_spaced = arguments.samples_along};
 }
 
 ExitCode run_one(const PathArguments& arguments, const Surface& surface, const Context& context, double surface_seconds,
@@ -89,8 +104,8 @@ ExitCode run_one(const PathArguments& arguments, const Surface& surface, const C
   const PathResult result = solver.solve(p, q);
   clear_progress();
   const double total = timer.seconds();
-  auto json = path_json(surface, result, arguments.options, surface_seconds, total);
-  std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  auto json = json_of(arguments, surface, result, surface_seconds, total);
+  std::vector<SceneFact> facts = path_facts(surface, result, arguments.options, surface_seconds, total);
   if (arguments.verify) add_verification(surface, result, context, json, facts);
   return deliver_path(arguments.delivery, output_of(arguments, surface, result, json, facts), context);
 }
@@ -108,8 +123,8 @@ ExitCode run_via(const PathArguments& arguments, const Surface& surface, const C
   const ViaResult result = path_through(solver, points);
   clear_progress();
   const double total = timer.seconds();
-  auto json = path_json(surface, result, arguments.options, surface_seconds, total);
-  std::vector<SceneFact> facts = path_facts(result, arguments.options, surface_seconds, total);
+  auto json = json_of(arguments, surface, result, surface_seconds, total);
+  std::vector<SceneFact> facts = path_facts(surface, result, arguments.options, surface_seconds, total);
   add_legs(result, json);
   add_legs(result, facts);
   PathOutput output = output_of(arguments, surface, result, json, facts);
@@ -131,9 +146,9 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
   const auto describe = [&](const PathResult& result) {
     clear_progress();
     const double total = timer.seconds();
-    json = path_json(surface, result, arguments.options, surface_seconds, total);
+    json = json_of(arguments, surface, result, surface_seconds, total);
     json["unique"] = nullptr;
-    facts = path_facts(result, arguments.options, surface_seconds, total);
+    facts = path_facts(surface, result, arguments.options, surface_seconds, total);
   };
   if (!arguments.closed.empty()) {
     const ClosedGeodesic loop = close_polyline(arguments.closed, surface, arguments.options, context);
@@ -152,11 +167,12 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
 /// All that says which surface it is.
 std::string surface_text(const SurfaceArguments& arguments) {
   constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-  std::string text = fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0),
-                                 fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box,
-                                 arguments.samples, arguments.rbf.smoothing.value_or(-1), arguments.rbf.max_samples,
-                                 arguments.rbf.support_radius, arguments.volume.iso.value_or(kUnset),
-                                 arguments.volume.label.value_or(kUnset), arguments.volume.grid_name);
+  std::string text = fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0), arguments.variables,
+      fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box, arguments.samples,
+      static_cast<int>(arguments.fit.method), arguments.fit.smoothing.value_or(-1), arguments.fit.max_samples,
+      arguments.fit.support_radius, arguments.volume.iso.value_or(kUnset), arguments.volume.label.value_or(kUnset),
+      arguments.volume.grid_name);
   if (!names_a_file(arguments.surface)) return text;
   std::error_code ignored;
   const auto time = std::filesystem::last_write_time(arguments.surface, ignored).time_since_epoch().count();
@@ -164,8 +180,12 @@ std::string surface_text(const SurfaceArguments& arguments) {
 }
 
 ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const Context& context) {
-  PairsRequest request{
-      .file = arguments.pairs, .out = {}, .surface = surface_text(arguments.surface), .options = arguments.options};
+  PairsRequest request{.file = arguments.pairs,
+                       .out = {},
+                       .surface = surface_text(arguments.surface),
+                       .options = arguments.options,
+                       .columns = arguments.columns,
+                       .header = arguments.header};
   const std::vector<std::string>& out = arguments.delivery.files.out;
   if (!out.empty()) request.out = out.front();
   return answer_pairs(request, surface, context);
@@ -235,6 +255,14 @@ ExitCode run(PathArguments arguments, const CLI::App& command) {
   if (pairs && (out.size() > 1 || (out.size() == 1 && !out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");
   }
+  if (pairs && arguments.samples_along > 0)
+    throw UsageError("--samples-along is for the points of paths; --pairs has none");
+  if ((arguments.header || arguments.columns.unique) && ((!pairs && !many) || arguments.delivery.json)) {
+    throw UsageError("--header and --unique are for the lines of --pairs and --to-file");
+  }
+  refuse_to_overwrite({arguments.pairs, arguments.to_file, arguments.start, arguments.closed, arguments.surface.samples,
+                       arguments.surface.surface},
+                      out);
   if (pairs && arguments.delivery.json)
     throw UsageError("--pairs writes lines; --json is for --from with --to or --to-file");
   const Timer timer;
@@ -253,6 +281,9 @@ ExitCode run(PathArguments arguments, const CLI::App& command) {
                            .options = arguments.options,
                            .surface = arguments.surface.surface,
                            .show = arguments.show,
+                           .columns = arguments.columns,
+                           .header = arguments.header,
+                           .samples_along = arguments.samples_along,
                            .surface_seconds = surface_seconds},
                           arguments.delivery, surface, context, timer);
   }
@@ -272,7 +303,8 @@ Run add_path_command(CLI::App& app) {
   command.add_option("--to", arguments->to, "end, likewise");
   command.add_option("--via", arguments->via, "a point to pass on the way (repeatable, in order), likewise")
       ->allow_extra_args(false);
-  command.add_option("--to-file", arguments->to_file, "ends, one a line: every path shares the start's marched field");
+  command.add_option("--to-file", arguments->to_file,
+                     "ends, one a line, - = stdin: every path shares the start's marched field");
   command.add_option(
       "--pairs", arguments->pairs,
       "pairs p1,...,pd,q1,...,qd, one a line, - = stdin; writes length,error,converged,locally_shortest,status");
@@ -306,6 +338,13 @@ Run add_path_command(CLI::App& app) {
   command.add_flag("--all", options.all, "look for every way round, and report each of them");
   command.add_flag("--verify", arguments->verify,
                    "follow the path as an initial-value problem, and say where it lands");
+  command
+      .add_option("--samples-along", arguments->samples_along,
+                  "write so many points a path, evenly spaced by arc length (default: the path's own)")
+      ->check(whole_number(2, 10000000));
+  command.add_flag("--header", arguments->header, "--pairs, --to-file: a first line with the columns' names");
+  command.add_flag("--unique", arguments->columns.unique,
+                   "--pairs, --to-file: one more column, 1 where no other way is as short, else 0; empty: not known");
   arguments->delivery.add_to(command);
   arguments->show.add_to(command);
   arguments->common.add_to(command);

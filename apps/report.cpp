@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "flow_report.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut::app {
 namespace {
@@ -29,6 +31,12 @@ bool has_path(const PathResult& result) { return result.points.cols() > 0; }
 
 std::string duration(double seconds) {
   return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+/// With its error; without one, all digits.
+std::string length_text(const PathResult& result) {
+  if (!std::isfinite(result.length_error)) return fmt::format("{:.15g}", result.length);
+  return fmt::format("{:.15g} +- {:.1e}", result.length, result.length_error);
 }
 
 }  // namespace
@@ -80,6 +88,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["status"] = to_string(result.status);
   if (!result.message.empty()) json["message"] = result.message;
   json["surface"] = {{"kind", surface.kind()}, {"dim", surface.dim()}, {"codim", surface.codim()}};
+  if (const std::optional<double> residual = fit_residual(surface)) json["fit_residual"] = number(*residual);
   json["from"] = vector_json(result.from);
   json["to"] = vector_json(result.to);
   json["length"] = has_path(result) ? number(result.length) : Json(nullptr);
@@ -128,13 +137,15 @@ void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& fac
   facts.push_back({"pictures", duration(seconds)});
 }
 
-std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options, double surface_seconds,
-                                  double total_seconds) {
+std::vector<SceneFact> path_facts(const Surface& surface, const PathResult& result, const PathOptions& options,
+                                  double surface_seconds, double total_seconds) {
   std::vector<SceneFact> facts;
-  const bool estimated = std::isfinite(result.length_error);
   if (has_path(result)) {
-    facts.push_back({"length", estimated ? fmt::format("{:.15g} +- {:.1e}", result.length, result.length_error)
-                                         : fmt::format("{:.15g}", result.length)});
+    facts.push_back({"length", length_text(result)});
+    if (const std::optional<double> residual = fit_residual(surface)) {
+      facts.push_back(
+          {"fit", fmt::format("stands {:.1e} (rms) off its samples: digits beyond are the fit's alone", *residual)});
+    }
   }
   std::string status(to_string(result.status));
   if (!result.corrected && result.status == Status::ok) status += ", the path on the grid, not corrected";

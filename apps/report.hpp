@@ -16,8 +16,9 @@ namespace taut::app {
                                                double total_seconds);
 
 /// The same for a person: a few lines, each a name and a value.
-[[nodiscard]] std::vector<SceneFact> path_facts(const PathResult& result, const PathOptions& options,
-                                                double surface_seconds, double total_seconds);
+[[nodiscard]] std::vector<SceneFact> path_facts(const Surface& surface, const PathResult& result,
+                                                const PathOptions& options, double surface_seconds,
+                                                double total_seconds);
 
 /// Adds what pictures took to the seconds of a path's JSON, and to its facts.
 void add_picture_seconds(double seconds, nlohmann::ordered_json& json, std::vector<SceneFact>& facts);

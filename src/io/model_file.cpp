@@ -1,5 +1,6 @@
 #include "taut/io/model_file.hpp"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -7,25 +8,28 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 
 #include "io/input_file.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
 
 // The format, all numbers little-endian, a real as its 64 IEEE bits, an integer in 64 bits:
-//   "taut model 1\n"
-//   kernel (0 cubic, 1 quintic)
-//   centres, weights, polynomial, origin: each rows, columns, then the entries column by column
-//   scale, support radius
+//   "taut model 2\n"
+//   kind (0 dense, 1 local)
+//   dense: kernel (0 cubic, 1 quintic)
+//          centres, weights, polynomial, origin: each rows, columns, then the entries column by column
+//          scale, support radius
+//   local: centres, radii, coefficients, support, as above
 //   samples: points, normals as above, faces with integers
-//   report: two integers, seven reals
+//   report: of a dense fit three integers and nine reals, of a local one three integers and four reals
 //   checksum: FNV-1a (64 bit) of everything before it
 
 namespace taut {
 namespace {
 
 constexpr std::string_view kMagic = "taut model ";
-constexpr std::string_view kVersion = "1\n";
+constexpr std::string_view kVersion = "2\n";
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -69,7 +73,7 @@ class ModelReader {
     rest_.remove_prefix(kMagic.size());
     if (!rest_.starts_with(kVersion)) {
       file_.fail("has model version " + detail::quote(rest_.substr(0, rest_.find('\n'))) +
-                 ", this program reads version 1; fit the cloud again");
+                 ", this program reads version 2; fit the cloud again");
     }
     rest_.remove_prefix(kVersion.size());
     constexpr std::size_t kWord = 8;
@@ -130,24 +134,71 @@ class ModelReader {
   std::string_view rest_;
 };
 
-void require_sound(const RbfModel& model, const detail::InputFile& file) {
-  const Index d = model.origin.size();
-  const PointCloud& samples = model.samples;
-  const bool shapes = d >= 2 && model.centres.rows() == d && samples.points.rows() == d &&
-                      samples.normals.rows() == d &&
-                      (samples.normals.cols() == 0 || samples.normals.cols() == samples.points.cols()) &&
-                      model.weights.size() == model.centres.cols();
-  const bool values = model.centres.allFinite() && model.weights.allFinite() && model.polynomial.allFinite() &&
-                      model.origin.allFinite() && model.scale > 0 && std::isfinite(model.scale) &&
-                      model.support_radius >= 0 && samples.points.allFinite();
-  const bool faces = samples.faces.size() == 0 || samples.faces.maxCoeff() < samples.points.cols();
-  if (!shapes || !values || !faces) file.fail("is damaged (its parts do not fit together); fit the cloud again");
+/// Finite points with normals that fit them, faces that name points.
+bool sound_samples(const PointCloud& samples, Index d) {
+  return samples.points.rows() == d && samples.normals.rows() == d && samples.points.allFinite() &&
+         (samples.normals.cols() == 0 || samples.normals.cols() == samples.points.cols()) &&
+         (samples.faces.size() == 0 || samples.faces.maxCoeff() < samples.points.cols());
 }
 
-}  // namespace
+bool sound(const RbfModel& model) {
+  const Index d = model.origin.size();
+  return d >= 2 && model.centres.rows() == d && model.weights.size() == model.centres.cols() &&
+         model.centres.allFinite() && model.weights.allFinite() && model.polynomial.allFinite() &&
+         model.origin.allFinite() && model.scale > 0 && std::isfinite(model.scale) && model.support_radius >= 0 &&
+         sound_samples(model.samples, d);
+}
 
-void write_model(const std::filesystem::path& path, const RbfModel& model) {
-  ModelWriter out;
+bool sound(const LocalFitModel& model) {
+  const Index d = model.centres.rows();
+  const Index m = model.centres.cols();
+  return (d == 2 || d == 3) && m > 0 && model.radii.size() == m && model.coefficients.cols() == m &&
+         model.centres.allFinite() && model.coefficients.allFinite() && model.radii.allFinite() &&
+         model.radii.minCoeff() > 0 && model.support.size() == model.samples.size() && model.support.allFinite() &&
+         sound_samples(model.samples, d) && model.samples.size() > 0;
+}
+
+void write_samples(ModelWriter& out, const PointCloud& samples) {
+  out.matrix(samples.points);
+  out.matrix(samples.normals);
+  out.matrix(samples.faces);
+}
+
+PointCloud read_samples(ModelReader& in) {
+  PointCloud samples;
+  samples.points = in.matrix<Points>();
+  samples.normals = in.matrix<Points>();
+  samples.faces = in.matrix<Eigen::Matrix3Xi>();
+  return samples;
+}
+
+// The numbers of a report, in the order of the file.
+auto counts(auto& report) { return std::array{&report.num_samples, &report.residual_at}; }
+auto reals(RbfReport& report) {
+  return std::array{&report.spacing,      &report.noise,        &report.smoothing,
+                    &report.offset,       &report.residual,     &report.left_out_rms,
+                    &report.left_out_max, &report.residual_rms, &report.residual_max};
+}
+auto reals(LocalFitReport& report) {
+  return std::array{&report.spacing, &report.noise, &report.residual_rms, &report.residual_max};
+}
+
+template <class Report>
+void write_report(ModelWriter& out, Report report, Index own_count) {
+  out.integer(own_count);
+  for (const Index* count : counts(report)) out.integer(*count);
+  for (const double* real : reals(report)) out.real(*real);
+}
+
+template <class Report>
+void read_report(ModelReader& in, Report& report, Index& own_count) {
+  own_count = in.integer();
+  for (Index* count : counts(report)) *count = in.integer();
+  for (double* real : reals(report)) *real = in.real();
+}
+
+void write(ModelWriter& out, const RbfModel& model) {
+  out.integer(0);
   out.integer(model.kernel == RbfKernel::quintic ? 1 : 0);
   out.matrix(model.centres);
   out.matrix(model.weights);
@@ -155,22 +206,21 @@ void write_model(const std::filesystem::path& path, const RbfModel& model) {
   out.matrix(model.origin);
   out.real(model.scale);
   out.real(model.support_radius);
-  out.matrix(model.samples.points);
-  out.matrix(model.samples.normals);
-  out.matrix(model.samples.faces);
-  const RbfReport& report = model.report;
-  out.integer(report.num_samples);
-  out.integer(report.num_fitted);
-  for (const double value : {report.spacing, report.noise, report.smoothing, report.offset, report.residual,
-                             report.left_out_rms, report.left_out_max}) {
-    out.real(value);
-  }
-  write_text(path, out.finish());
+  write_samples(out, model.samples);
+  write_report(out, model.report, model.report.num_fitted);
 }
 
-RbfModel read_model(const std::filesystem::path& path, const Context& context) {
-  const detail::InputFile file = detail::read_file(path, context);
-  ModelReader in(file);
+void write(ModelWriter& out, const LocalFitModel& model) {
+  out.integer(1);
+  out.matrix(model.centres);
+  out.matrix(model.radii);
+  out.matrix(model.coefficients);
+  out.matrix(model.support);
+  write_samples(out, model.samples);
+  write_report(out, model.report, model.report.samples_per_patch);
+}
+
+RbfModel read_dense(ModelReader& in, const detail::InputFile& file) {
   RbfModel model;
   const Index kernel = in.integer();
   if (kernel > 1) file.fail("is damaged (it names kernel " + std::to_string(kernel) + "); fit the cloud again");
@@ -181,18 +231,40 @@ RbfModel read_model(const std::filesystem::path& path, const Context& context) {
   model.origin = in.matrix<Vector>();
   model.scale = in.real();
   model.support_radius = in.real();
-  model.samples.points = in.matrix<Points>();
-  model.samples.normals = in.matrix<Points>();
-  model.samples.faces = in.matrix<Eigen::Matrix3Xi>();
-  RbfReport& report = model.report;
-  report.num_samples = in.integer();
-  report.num_fitted = in.integer();
-  for (double* value : {&report.spacing, &report.noise, &report.smoothing, &report.offset, &report.residual,
-                        &report.left_out_rms, &report.left_out_max}) {
-    *value = in.real();
-  }
+  model.samples = read_samples(in);
+  read_report(in, model.report, model.report.num_fitted);
+  return model;
+}
+
+LocalFitModel read_local(ModelReader& in) {
+  LocalFitModel model;
+  model.centres = in.matrix<Points>();
+  model.radii = in.matrix<Vector>();
+  model.coefficients = in.matrix<Points>();
+  model.support = in.matrix<Vector>();
+  model.samples = read_samples(in);
+  read_report(in, model.report, model.report.samples_per_patch);
+  return model;
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& path, const FitModel& model) {
+  ModelWriter out;
+  std::visit([&](const auto& kind) { write(out, kind); }, model);
+  write_text(path, out.finish());
+}
+
+FitModel read_model(const std::filesystem::path& path, const Context& context) {
+  const detail::InputFile file = detail::read_file(path, context);
+  ModelReader in(file);
+  const Index kind = in.integer();
+  if (kind > 1) file.fail("is damaged (it names kind " + std::to_string(kind) + " of fit); fit the cloud again");
+  FitModel model = kind == 0 ? FitModel(read_dense(in, file)) : FitModel(read_local(in));
   in.finish();
-  require_sound(model, file);
+  if (!std::visit([](const auto& fit) { return sound(fit); }, model)) {
+    file.fail("is damaged (its parts do not fit together); fit the cloud again");
+  }
   return model;
 }
 

@@ -80,6 +80,56 @@ TEST(Normals, GivenSideIsTrusted) {
   EXPECT_LT((estimate_normals(sphere) - sphere.normals).norm(), 1e-13);
 }
 
+/// The torus with the normals `flips(i)` turned to the wrong side.
+template <class Flips>
+Points repaired(Flips flips, std::string& note) {
+  PointCloud torus = test::torus_cloud(2000);
+  for (Index i = 0; i < torus.size(); ++i) {
+    if (flips(i, torus.points.col(i))) torus.normals.col(i) *= -1;
+  }
+  Context context;
+  context.note = [&](std::string_view message) { note += message; };
+  return estimate_normals(torus, 10, context);
+}
+
+TEST(Normals, GivenOnesThatPointToTheWrongSideAreTurned) {
+  const Points truth = test::torus_cloud(2000).normals;
+  std::string few;
+  EXPECT_EQ(share_within(repaired([](Index i, const Vector&) { return i % 50 == 7; }, few), truth, 1), 1.0);
+  EXPECT_NE(few.find("40 normals point to the other side"), std::string::npos) << few;
+  std::string patch;
+  EXPECT_EQ(share_within(repaired([](Index, const Vector& x) { return x(0) > 1; }, patch), truth, 1), 1.0);
+  EXPECT_NE(patch.find("to the other side"), std::string::npos) << patch;
+  std::string random;
+  test::Uniform uniform(4);
+  EXPECT_EQ(share_within(repaired([&](Index, const Vector&) { return uniform() < 0.5; }, random), truth, 1), 1.0);
+  EXPECT_NE(random.find("at random"), std::string::npos) << random;
+  std::string none;
+  (void)repaired([](Index, const Vector&) { return false; }, none);
+  EXPECT_EQ(none, "");
+}
+
+TEST(Normals, GivenOnesThatDoNotStandOnTheSheetAreEstimated) {
+  PointCloud sphere = test::sphere_cloud(3, 600);
+  const Points truth = sphere.normals;
+  sphere.normals.colwise() = Eigen::Vector3d(0, 0, 1);
+  std::string note;
+  Context context;
+  context.note = [&](std::string_view message) { note += message; };
+  EXPECT_EQ(share_within(estimate_normals(sphere, 10, context), truth, 20), 1.0);
+  EXPECT_NE(note.find("estimated instead"), std::string::npos) << note;
+}
+
+TEST(Normals, NoisySheetsTakeMoreNeighbours) {
+  PointCloud torus = test::torus_cloud(8000);
+  const Points truth = torus.normals;
+  test::Uniform uniform(6);
+  // Spacing 0.044: ten neighbours lie within 0.08, and spread by 0.02 across.
+  for (Index i = 0; i < torus.size(); ++i) torus.points.col(i) += 0.02 * uniform.normal() * truth.col(i);
+  torus.normals.resize(3, 0);
+  EXPECT_GT(share_within(estimate_normals(torus), truth, 30), 0.99);
+}
+
 TEST(Normals, FromFacesWhicheverWayTheMeshIsWound) {
   // An octahedron: by symmetry the vertex normals are the axes.
   PointCloud octahedron{Points(3, 6), Points(3, 0), Eigen::Matrix3Xi(3, 8)};

@@ -28,6 +28,9 @@ struct RbfReport {
   double residual = 0;      ///< largest miss of a constraint by the solver: rounding
   double left_out_rms = 0;  ///< |F| / |grad F| at the samples that are no constraints; 0 when there are none
   double left_out_max = 0;
+  double residual_rms = 0;  ///< the same at all samples
+  double residual_max = 0;
+  Index residual_at = 0;  ///< the sample (of the cloud, from 0) with the largest
 };
 
 /// F(x) = scale F_unit((x - origin) / scale), F_unit(u) = sum_i weight_i phi(|u - centre_i|) + a polynomial: what

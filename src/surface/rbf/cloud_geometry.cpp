@@ -10,6 +10,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/parallel.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {
@@ -22,7 +23,10 @@ std::uint64_t scramble(std::uint64_t x) {  // splitmix64's finaliser
   return x ^ (x >> 31);
 }
 
-/// Indices 0..n-1 in a fixed order without structure.
+double unit_ball_volume(double m) { return std::pow(std::numbers::pi, m / 2) / std::tgamma(m / 2 + 1); }
+
+}  // namespace
+
 std::vector<Index> scrambled_order(Index n) {
   std::vector<std::pair<std::uint64_t, Index>> keyed;
   keyed.reserve(static_cast<std::size_t>(n));
@@ -33,10 +37,6 @@ std::vector<Index> scrambled_order(Index n) {
   for (const auto& [key, index] : keyed) order.push_back(index);
   return order;
 }
-
-double unit_ball_volume(double m) { return std::pow(std::numbers::pi, m / 2) / std::tgamma(m / 2 + 1); }
-
-}  // namespace
 
 void require_finite(const Points& points, std::string_view what) {
   for (Index j = 0; j < points.cols(); ++j) {
@@ -90,17 +90,21 @@ Index affine_rank(const Points& points, double tolerance) {
   return (spread.array() > std::max(tolerance, 3e-8) * spread(0)).count();
 }
 
-Vector local_spacing(const Points& points, const KdTree& tree, Index neighbours) {
+Vector local_spacing(const Points& points, const KdTree& tree, const Context& context) {
+  constexpr Index kNeighbours = 8;
+  constexpr Index kGrain = 1024;
   const Index n = points.cols();
   const auto m = static_cast<double>(points.rows() - 1);
   Vector spacing = Vector::Zero(n);
-  std::vector<Neighbour> found;
-  for (Index i = 0; i < n; ++i) {
-    tree.nearest(points.col(i).data(), neighbours + 1, found);
-    const auto k = static_cast<double>(found.size() - 1);
-    if (k < 1) continue;
-    spacing(i) = std::sqrt(found.back().squared_distance) * std::pow(unit_ball_volume(m) / k, 1 / m);
-  }
+  parallel_for(context, 0, n, kGrain, [&](Index first, Index last) {
+    std::vector<Neighbour> found;
+    for (Index i = first; i < last; ++i) {
+      tree.nearest(points.col(i).data(), kNeighbours + 1, found);
+      const auto k = static_cast<double>(found.size() - 1);
+      if (k < 1) continue;
+      spacing(i) = std::sqrt(found.back().squared_distance) * std::pow(unit_ball_volume(m) / k, 1 / m);
+    }
+  });
   return spacing;
 }
 
@@ -155,6 +159,19 @@ double quantile(const Vector& values, double q) {
   const auto at = static_cast<std::ptrdiff_t>(q * static_cast<double>(sorted.size() - 1) + 0.5);
   std::nth_element(sorted.begin(), sorted.begin() + at, sorted.end());
   return sorted[static_cast<std::size_t>(at)];
+}
+
+std::vector<Index> spread_by_count(const Points& points, const KdTree& tree, Index count) {
+  std::vector<bool> covered(static_cast<std::size_t>(points.cols()), false);
+  std::vector<Index> chosen;
+  std::vector<Neighbour> found;
+  for (const Index i : scrambled_order(points.cols())) {
+    if (covered[static_cast<std::size_t>(i)]) continue;
+    chosen.push_back(i);
+    tree.nearest(points.col(i).data(), count, found);
+    for (const Neighbour& neighbour : found) covered[static_cast<std::size_t>(neighbour.index)] = true;
+  }
+  return chosen;
 }
 
 std::vector<Index> spread_subset(const Points& points, const KdTree& tree, double radius) {

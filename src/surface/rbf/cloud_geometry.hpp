@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "surface/rbf/kd_tree.hpp"
+#include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
@@ -25,7 +26,7 @@ struct MergedPoints {
 
 /// Mean distance between neighbours around each point, from how many fall into a ball on a (d - 1)-surface: the side of
 /// the (d - 1)-cube that one sample stands for. n.
-[[nodiscard]] Vector local_spacing(const Points& points, const KdTree& tree, Index neighbours = 8);
+[[nodiscard]] Vector local_spacing(const Points& points, const KdTree& tree, const Context& context = {});
 
 /// Standard deviation of the points along the normal about the quadrics that fit their neighbourhoods best, as a
 /// multiple of the local spacing: its 10 % quantile, since noise is everywhere but unresolved features are not. Only
@@ -35,6 +36,12 @@ struct MergedPoints {
 
 /// The q-quantile, 0 <= q <= 1, of the finite entries; 0 of none.
 [[nodiscard]] double quantile(const Vector& values, double q);
+
+/// Indices 0 .. n - 1 in a fixed order without structure.
+[[nodiscard]] std::vector<Index> scrambled_order(Index n);
+
+/// Points such that each point has one of them among about its `count` nearest, wherever it is dense or sparse.
+[[nodiscard]] std::vector<Index> spread_by_count(const Points& points, const KdTree& tree, Index count);
 
 /// A maximal subset of points no two of which are closer than `radius`: every point left out has a member of the subset
 /// within `radius`. Visits the points in a fixed scrambled order; returns ascending indices.

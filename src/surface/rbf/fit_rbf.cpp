@@ -56,25 +56,35 @@ double smoothing_for(double noise) {
   return noise < kClean ? 0 : std::min(4 + 10 * noise, 7.0);
 }
 
-/// |F| / |grad F| at the points that are not among the `chosen` (ascending).
-void measure_left_out(const Points& points, const std::vector<Index>& chosen, RbfModel& model, const Context& context) {
+/// |F| / |grad F| at all points, and at those that are not among the `chosen` (ascending). `original`: which sample of
+/// the cloud each is.
+void measure_residual(const Points& points, const std::vector<Index>& chosen, const std::vector<Index>& original,
+                      RbfModel& model, const Context& context) {
+  const detail::RbfFunction function(model);
+  Vector miss(points.cols());
+  constexpr Index kGrain = 64;
+  detail::parallel_for(context, 0, miss.size(), kGrain, [&](Index first, Index last) {
+    Vector gradient(points.rows());
+    for (Index i = first; i < last; ++i) {
+      double value = 0;
+      function.evaluate(points.col(i).data(), &value, gradient.data(), nullptr);
+      miss(i) = std::abs(value) / gradient.norm();
+    }
+  });
+  const auto rms = [](const Vector& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); };
+  RbfReport& report = model.report;
+  Index worst = 0;
+  report.residual_max = miss.maxCoeff(&worst);
+  report.residual_at = original[static_cast<std::size_t>(worst)];
+  report.residual_rms = rms(miss);
   std::vector<Index> left_out;
   for (Index i = 0; i < points.cols(); ++i) {
     if (!std::binary_search(chosen.begin(), chosen.end(), i)) left_out.push_back(i);
   }
   if (left_out.empty()) return;
-  const detail::RbfFunction function(model);
-  Vector miss(static_cast<Index>(left_out.size()));
-  detail::parallel_for(context, 0, miss.size(), 64, [&](Index first, Index last) {
-    Vector gradient(points.rows());
-    for (Index i = first; i < last; ++i) {
-      double value = 0;
-      function.evaluate(points.col(left_out[static_cast<std::size_t>(i)]).data(), &value, gradient.data(), nullptr);
-      miss(i) = std::abs(value) / gradient.norm();
-    }
-  });
-  model.report.left_out_max = miss.maxCoeff();
-  model.report.left_out_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
+  const Vector of_those = miss(left_out);
+  report.left_out_max = of_those.maxCoeff();
+  report.left_out_rms = rms(of_those);
 }
 
 }  // namespace
@@ -151,7 +161,7 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
     model.support_radius = model.scale * detail::default_support_radius(unit, normals, tree);
   }
 
-  measure_left_out(merged.points, chosen, model, context);
+  measure_residual(merged.points, chosen, merged.merged_from, model, context);
   return model;
 }
 

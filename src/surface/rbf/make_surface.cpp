@@ -38,11 +38,14 @@ Surface make_surface(std::shared_ptr<const RbfModel> model) {
   if (!model) throw InvalidArgument("a surface needs a model");
   require_consistent(*model);
   SurfaceExtras extras;
+  extras.samples = std::shared_ptr<const PointCloud>(model, &model->samples);
   if (model->samples.size() > 0) {
     extras.box = box_around(*model);
-    if (model->support_radius > 0) extras.domain = detail::make_support_domain(model);
+    if (model->support_radius > 0) {
+      extras.domain = detail::make_support_domain(
+          extras.samples, Vector::Constant(model->samples.size(), model->support_radius));
+    }
   }
-  extras.samples = std::shared_ptr<const PointCloud>(model, &model->samples);
   return Surface(std::make_shared<detail::RbfFunction>(*model), std::move(extras));
 }
 

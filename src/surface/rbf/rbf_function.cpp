@@ -33,7 +33,8 @@ RbfFunction::RbfFunction(const RbfModel& model)
       scale_(model.scale),
       space_{model.origin.size(), model.kernel == RbfKernel::quintic ? 2 : 1},
       polynomial_(model.polynomial),
-      sum_(model.kernel, model.centres, model.weights) {}
+      sum_(model.kernel, model.centres, model.weights),
+      residual_rms_(model.report.residual_rms) {}
 
 std::unique_ptr<Evaluator> RbfFunction::make_evaluator() const { return std::make_unique<RbfEvaluator>(*this); }
 

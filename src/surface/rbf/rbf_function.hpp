@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "surface/fitted_function.hpp"
 #include "surface/rbf/kernel_sum.hpp"
 #include "surface/rbf/polynomial.hpp"
 #include "taut/surface/implicit_function.hpp"
@@ -10,13 +11,14 @@
 namespace taut::detail {
 
 /// F of an RbfModel, in model units.
-class RbfFunction : public ImplicitFunction {
+class RbfFunction : public FittedFunction {
  public:
   explicit RbfFunction(const RbfModel& model);
   [[nodiscard]] Index dim() const override { return origin_.size(); }
   [[nodiscard]] Index codim() const override { return 1; }
   [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
   [[nodiscard]] std::string_view kind() const override { return "rbf"; }
+  [[nodiscard]] double residual_rms() const override { return residual_rms_; }
 
   /// Value, gradient (d) and Hessian (d x d) at one point; null outputs are not computed.
   void evaluate(const double* x, double* value, double* gradient, double* hessian) const;
@@ -27,6 +29,7 @@ class RbfFunction : public ImplicitFunction {
   PolynomialSpace space_;
   Vector polynomial_;
   KernelSum sum_;
+  double residual_rms_;
 };
 
 }  // namespace taut::detail

@@ -15,4 +15,8 @@ namespace taut::detail {
 /// sheets F changes sign once more where there is no surface. `points`, `normals`: d x n, distinct, unit.
 [[nodiscard]] double default_support_radius(const Points& points, const Points& normals, const KdTree& tree);
 
+/// That bound alone: infinite where no such sheets were found near.
+[[nodiscard]] double support_between_sheets(const Points& points, const Points& normals, const KdTree& tree,
+                                            const Vector& spacing);
+
 }  // namespace taut::detail

@@ -1,0 +1,185 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/memory_limit.hpp"
+#include "core/parallel.hpp"
+#include "surface/describe.hpp"
+#include "surface/local_fit/blended_function.hpp"
+#include "surface/local_fit/patch_cover.hpp"
+#include "surface/local_fit/patch_solve.hpp"
+#include "surface/local_fit/support_radii.hpp"
+#include "surface/rbf/cloud_geometry.hpp"
+#include "surface/rbf/kd_tree.hpp"
+#include "taut/core/error.hpp"
+#include "taut/surface/local_fit.hpp"
+#include "taut/surface/normals.hpp"
+
+// Four steps, each linear in the number of samples but for the searching of neighbours:
+//   1. unit normals; the spacing around each sample;
+//   2. how many samples a patch should hold, by leave-one-out cross-validation on patches spread over the cloud;
+//   3. balls that cover the samples, thinned greedily;
+//   4. in each ball the cubic that fits samples and normals best (Hermite least squares).
+// The balls depend on the cloud alone and each patch on its ball alone, so that threads change nothing.
+
+namespace taut {
+namespace {
+
+using detail::Ball;
+using detail::KdTree;
+using detail::Neighbour;
+using detail::OrientedSamples;
+
+/// A patch of radius R flattens ripples of wavelength R / kRadiusPerWavelength to half (measured by a test).
+constexpr double kRadiusPerWavelength = 1.0;
+constexpr double kBytesPerSample = 1200;
+
+void require_valid(const PointCloud& cloud, const LocalFitOptions& options) {
+  const auto require = [](bool good, const char* what, double value) {
+    if (!good) throw InvalidArgument(std::string(what) + ", not " + detail::describe(value));
+  };
+  require(cloud.dim() == 2 || cloud.dim() == 3, "points of a local fit need 2 or 3 coordinates",
+          static_cast<double>(cloud.dim()));
+  const double smoothing = options.smoothing.value_or(0);
+  require(smoothing >= 0 && std::isfinite(smoothing), "the smoothing length must be >= 0", smoothing);
+  require(options.support_radius >= 0 && std::isfinite(options.support_radius),
+          "the support radius of a local fit must be >= 0", options.support_radius);
+  require(options.normal_neighbours >= 2, "normals need at least 2 neighbours",
+          static_cast<double>(options.normal_neighbours));
+}
+
+void require_memory(Index num_samples, const Context& context) {
+  const double needed = local_fit_bytes(num_samples);
+  const auto limit = static_cast<double>(detail::memory_limit(context));
+  if (needed <= limit) return;
+  const auto megabytes = [](double bytes) { return std::to_string(static_cast<long>(bytes / (1 << 20))) + " MB"; };
+  throw OutOfMemory("a fit of " + std::to_string(num_samples) + " samples needs " + megabytes(needed) + " of the " +
+                    megabytes(limit) + " it may take: thin the cloud");
+}
+
+/// Patches at a rim, and where a mesh is coarse, are so large that the surface is theirs as far as it goes.
+void wish_for_rims(OrientedSamples samples, const KdTree& tree, const Vector& spacing, const Vector& support,
+                   detail::BallWishes& wishes, const Context& context) {
+  constexpr double kBeyondSupport = 1.15;
+  constexpr double kCoarse = 3;  // spacings
+  wishes.own = detail::find_rim(samples, tree, context);
+  for (Index i = 0; i < support.size(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (support(i) > kCoarse * spacing(i)) wishes.own[at] = true;
+    if (wishes.own[at]) wishes.radius(i) = std::max(wishes.radius(i), kBeyondSupport * support(i));
+  }
+}
+
+/// A large smoothing length may put the whole cloud into one ball. So many samples tell a cubic all there is to tell: of
+/// more, ordered by their distance, every second, third, ... is taken.
+void thin(std::vector<Neighbour>& near) {
+  constexpr std::size_t kMostSamples = 2000;
+  const std::size_t step = near.size() / kMostSamples + 1;
+  if (step == 1) return;
+  for (std::size_t kept = 0; kept * step < near.size(); ++kept) near[kept] = near[kept * step];
+  near.resize((near.size() + step - 1) / step);
+}
+
+/// Fits the patches; returns the median number of samples in one.
+template <int D>
+Index fit_patches(OrientedSamples samples, const KdTree& tree, const std::vector<Ball>& balls, LocalFitModel& model,
+                  const Context& context) {
+  constexpr Index kGrain = 64;
+  constexpr Index kBetweenReports = 8192;
+  const auto m = static_cast<Index>(balls.size());
+  model.centres.resize(D, m);
+  model.radii.resize(m);
+  model.coefficients.resize(static_cast<Index>(detail::Cubic<D>::kSize), m);
+  Vector num_samples(m);
+  const auto fit = [&](Index first, Index last) {
+    detail::PatchSolver<D> solver(samples);
+    std::vector<Neighbour> near;
+    for (Index i = first; i < last; ++i) {
+      const Ball& ball = balls[static_cast<std::size_t>(i)];
+      tree.within(samples.points.col(ball.sample).data(), ball.radius, near);
+      thin(near);
+      std::array<double, D> centre{};
+      for (int a = 0; a < D; ++a) centre[static_cast<std::size_t>(a)] = samples.points(a, ball.sample);
+      const detail::Patch<D> patch = solver.fit(centre, ball.radius, near);
+      model.centres.col(i) = samples.points.col(ball.sample);
+      model.radii(i) = ball.radius;
+      model.coefficients.col(i) = Eigen::Map<const Vector>(patch.cubic.coefficient.data(), model.coefficients.rows());
+      num_samples(i) = static_cast<double>(near.size());
+    }
+  };
+  for (Index begin = 0; begin < m; begin += kBetweenReports) {
+    const Index end = std::min(m, begin + kBetweenReports);
+    detail::parallel_for(context, begin, end, kGrain, fit);
+    context.report("fit", static_cast<double>(end) / static_cast<double>(m));
+  }
+  return static_cast<Index>(detail::quantile(num_samples, 0.5));
+}
+
+/// How far the surface stands off the samples; `original`: which sample of the cloud each is.
+void measure_residual(const Points& points, const std::vector<Index>& original, LocalFitModel& model,
+                      const Context& context) {
+  const std::shared_ptr<const ImplicitFunction> function = detail::make_blended_function(model);
+  constexpr Index kGrain = 1024;
+  Vector miss(points.cols());
+  detail::parallel_for(context, 0, points.cols(), kGrain, [&](Index first, Index last) {
+    const auto evaluator = function->make_evaluator();
+    const Points x = points.middleCols(first, last - first);
+    Vector value(x.cols());
+    Points gradient(x.rows(), x.cols());
+    evaluator->evaluate({.n = x.cols(), .x = x.data(), .value = value.data(), .jacobian = gradient.data()});
+    miss.segment(first, last - first) = value.array().abs() / gradient.colwise().norm().transpose().array();
+  });
+  Index worst = 0;
+  model.report.residual_max = miss.maxCoeff(&worst);
+  model.report.residual_at = original[static_cast<std::size_t>(worst)];
+  model.report.residual_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
+}
+
+}  // namespace
+
+double local_fit_bytes(Index num_samples) { return kBytesPerSample * static_cast<double>(num_samples); }
+
+LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options, const Context& context) {
+  require_valid(cloud, options);
+  require_memory(cloud.size(), context);
+  LocalFitModel model;
+  model.samples = cloud;
+  model.samples.normals = estimate_normals(cloud, options.normal_neighbours, context);
+  const detail::MergedPoints merged = detail::merge_duplicates(cloud.points);
+  const Points normals = model.samples.normals(Eigen::all, merged.merged_from);
+  const OrientedSamples samples{merged.points, normals};
+  const KdTree tree(samples.points);
+  const Index n = samples.points.cols();
+
+  const Vector spacing = detail::local_spacing(samples.points, tree, context);
+  const Vector support = options.support_radius > 0
+                             ? Vector(Vector::Constant(n, options.support_radius))
+                             : detail::support_radii(samples, tree, spacing, cloud.faces, merged.merged_to, context);
+  context.check_cancelled();
+
+  // Meshes are taken at their word: what looks like noise on a coarse one is unresolved shape.
+  const bool by_size = options.smoothing.has_value() || cloud.faces.cols() > 0;
+  detail::BallWishes wishes;
+  wishes.samples = by_size ? std::vector<Index>(static_cast<std::size_t>(n), detail::fewest_samples(cloud.dim()))
+                           : detail::samples_by_cross_validation(samples, tree, context);
+  wishes.radius = Vector::Constant(n, kRadiusPerWavelength * options.smoothing.value_or(0));
+  wish_for_rims(samples, tree, spacing, support, wishes, context);
+  const std::vector<Ball> balls = detail::cover(samples.points, tree, wishes, context);
+  LocalFitReport& report = model.report;
+  report.samples_per_patch = cloud.dim() == 2 ? fit_patches<2>(samples, tree, balls, model, context)
+                                              : fit_patches<3>(samples, tree, balls, model, context);
+  model.support.resize(cloud.size());
+  for (Index i = 0; i < cloud.size(); ++i) model.support(i) = support(merged.merged_to[static_cast<std::size_t>(i)]);
+  report.num_samples = n;
+  report.spacing = detail::quantile(spacing, 0.5);
+  report.noise =
+      by_size && !options.smoothing ? 0 : report.spacing * detail::relative_noise(samples.points, normals, tree);
+  measure_residual(samples.points, merged.merged_from, model, context);
+  return model;
+}
+
+}  // namespace taut
