@@ -42,14 +42,20 @@ void evaluate(const taut::ImplicitFunction& function) {
   }
 }
 
+/// Throws nothing but what a formula may end in.
+void read(std::string_view text, const taut::FormulaOptions& options) {
+  try {
+    evaluate(*taut::parse_function(text, options));
+  } catch (const taut::ParseError& error) {
+    require(error.column() <= text.size());
+  }
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  try {
-    evaluate(*taut::parse_function(text, {.parameters = {{"r", 0.5}}}));
-  } catch (const taut::ParseError& error) {
-    require(error.column() <= size);
-  }
+  read(text, {.parameters = {{"r", 0.5}}});
+  read(text, {.variables = {"x", "theta", "\u03C6"}});
   return 0;
 }

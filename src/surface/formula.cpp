@@ -34,7 +34,7 @@ std::shared_ptr<const ImplicitFunction> parse(std::string_view formula, Statemen
                                               const FormulaOptions& options) {
   require_dim(options.dim);
   Graph graph;
-  Names names(options.parameters, options.dim);
+  Names names(options.variables, options.parameters, options.dim);
   std::vector<NodeId> components = detail::parse_statements(formula, allowed, names, graph);
   const Index dim = options.dim.value_or(std::max<Index>(2, names.variables_used()));
   return compile(std::move(graph), std::move(components), dim);
@@ -46,7 +46,7 @@ std::shared_ptr<const ImplicitFunction> parse_domain(const FormulaOptions& optio
   std::vector<NodeId> components;
   for (const std::string& text : options.domain) {
     try {
-      Names names(options.parameters, dim);
+      Names names(options.variables, options.parameters, dim);
       const std::vector<NodeId> found = detail::parse_statements(text, Statements::inequalities, names, graph);
       components.insert(components.end(), found.begin(), found.end());
     } catch (const ParseError& error) {

@@ -9,6 +9,7 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
+#include "taut/surface/unknown_name.hpp"
 
 namespace taut {
 namespace {
@@ -64,6 +65,72 @@ TEST(Formula, GrammarReadsAsMathematics) {
   EXPECT_EQ(at("r*x + y", p, {.parameters = {{"r", -0.5}}}), 2);
 }
 
+TEST(Formula, ReadsWhatPeopleType) {
+  const std::vector<double> p{2, 3};
+  EXPECT_EQ(at("x**2 + y", p), 7);
+  EXPECT_EQ(at("x == y", p), -1);
+  EXPECT_EQ(at("x\u00B2 + y\u00B3", p), 31);
+  EXPECT_EQ(at("x\u00B9\u2070 - y", p), 1021);
+  EXPECT_EQ(at("x\u207B\u00B9 + 0y", p), 0.5);
+  EXPECT_EQ(at("-x\u00B2y", p), -12);
+  EXPECT_EQ(at("2^x\u00B2 + 0y", p), 16);
+  EXPECT_EQ(at("(x+y)\u00B2", p), 25);
+  EXPECT_EQ(at("x\u2212y \u2013 1", p), -2);
+  EXPECT_EQ(at("x\u00B7y + x\u00D7y + x\u22C5y", p), 18);
+  EXPECT_EQ(at("y\u00F7x", p), 1.5);
+  EXPECT_EQ(at("2\u03C0 + 0x + 0y", p), 2 * std::numbers::pi);
+  EXPECT_EQ(at("\u221A(x+y-1) + \u221A4", p), 4);
+  EXPECT_EQ(at("\uFEFFx\u00A0+\u2009y", p), 5);
+  EXPECT_EQ(at("ln(x) - log(x) + arctan(y) - atan(y)", p), 0);
+  EXPECT_EQ(at("|x-y| + |y|", p), 4);
+  EXPECT_EQ(at("||x|-|y||", p), 1);
+  EXPECT_EQ(at("2|x-y|\u00B2 - |-x|^2", p), -2);
+  EXPECT_EQ(at("max(|x|, |y|)", p), 3);
+  EXPECT_EQ(at("x y + xy + 2xy + xxy", p), 6 + 6 + 12 + 12);
+  EXPECT_EQ(at("xy\u00B2", p), 18);
+  EXPECT_EQ(at("x(y+1) + (y)(x)", p), 14);
+  EXPECT_EQ(at("x1x2 + x2x1^2", p), 6 + 12);
+  EXPECT_EQ(at("sin x", p), at("sin(x)", p));
+  EXPECT_EQ(at("2 sin x cos y - 3*sin 2", p), at("2*sin(x)*cos(y) - 3*sin(2)", p));
+  EXPECT_EQ(at("x sin y", p), at("x*sin(y)", p));
+  EXPECT_EQ(at("sin^2(x) + cos\u00B2(x) + sin^2 y + cos\u00B2 y", p), at("sin(x)^2+cos(x)^2+sin(y)^2+cos(y)^2", p));
+  EXPECT_EQ(at("R x + y", p, {.parameters = {{"R", 5}}}), 13);
+}
+
+TEST(Formula, VariablesMayHaveNamesOfTheirOwn) {
+  const std::vector<double> p{2, 3};
+  EXPECT_EQ(at("theta^2 + phi", p, {.variables = {"theta", "phi"}}), 7);
+  EXPECT_EQ(at("\u03B8\u00B2 + 2\u03C6 + a", p, {.variables = {"\u03B8", "\u03C6"}, .parameters = {{"a", 1}}}), 11);
+  EXPECT_EQ(at("y - x", p, {.variables = {"y", "x"}}), -1);  // the order given, not the alphabet's
+  EXPECT_EQ(parse_surface("a = b", {.variables = {"a", "b", "c"}, .domain = {"c >= 0"}}).dim(), 3);
+  const auto refused = [](const std::string& formula, const FormulaOptions& options) {
+    return error_of(formula, options);
+  };
+  EXPECT_NE(refused("x = 1", {.variables = {"a", "b"}}).find("'x' is unknown"), std::string::npos);
+  EXPECT_NE(refused("thta = 1", {.variables = {"theta", "phi"}}).find("did you mean 'theta'"), std::string::npos);
+  EXPECT_NE(refused("a = 1", {.variables = {"a", "a"}}).find("twice"), std::string::npos);
+  EXPECT_NE(refused("a = 1", {.variables = {"a", "sin"}}).find("function"), std::string::npos);
+  EXPECT_NE(refused("a = 1", {.variables = {"a", "2b"}}).find("not a name"), std::string::npos);
+  EXPECT_NE(refused("a = 1", {.dim = 3, .variables = {"a", "b"}}).find("dimension is 3"), std::string::npos);
+  EXPECT_NE(refused("a = 1", {.variables = {"a", "b"}, .parameters = {{"a", 1}}}).find("variable"), std::string::npos);
+}
+
+TEST(Formula, AnUnknownNameIsToldByItsName) {
+  try {
+    (void)parse_surface("x^2 + y^2 = R^2");
+    ADD_FAILURE() << "R has no value";
+  } catch (const UnknownName& error) {
+    EXPECT_EQ(error.name(), "R");
+    EXPECT_EQ(error.column(), 12U);
+  }
+}
+
+TEST(Formula, OfSeveralLinesTheErrorShowsOne) {
+  const std::string what = error_of("x^2 +\n y^2 + q\n = 1");
+  EXPECT_NE(what.find("\n   y^2 + q\n"), std::string::npos) << what;
+  EXPECT_EQ(what.substr(what.rfind('\n') + 1), "         ^") << what;
+}
+
 TEST(Formula, DimensionIsTheLargestVariable) {
   EXPECT_EQ(parse_surface("x^2 = 1").dim(), 2);
   EXPECT_EQ(parse_surface("z = 1").dim(), 3);
@@ -101,16 +168,32 @@ TEST(Formula, ErrorsPointAtTheColumn) {
       {"(x", 0, "never closed"},
       {"x + sin((y)", 4, "never closed"},
       {"x)", 1, "closes nothing"},
-      {"x y", 2, "operator"},
       {"2 3x", 2, "operator"},
-      {"x(y+1)", 0, "not a function"},
-      {"sin x", 0, "parentheses"},
       {"1/2x", 3, "two ways"},
+      {"1/xy", 3, "two ways"},
+      {"x^yz", 3, "two ways"},
+      {"2^x(y+1)", 3, "two ways"},
+      {"2^-xy", 4, "two ways"},
+      {"e(x) + y", 0, "write exp(...)"},
+      {"sin x^2", 5, "two ways"},
+      {"sin x y", 6, "two ways"},
+      {"sin xy", 5, "two ways"},
+      {"sin 2x", 5, "two ways"},
+      {"sin x/2", 5, "two ways"},
+      {"sin sin x", 0, "parentheses"},
+      {"max x", 0, "parentheses"},
+      {"sin -x", 0, "parentheses"},
+      {"sin^-1(x)", 3, "whole power"},
+      {"x\u00B2^3", 3, "two powers"},
+      {"x\u207B", 1, "raised minus"},
+      {"|x", 0, "never closed"},
+      {"(|x)", 1, "never closed"},
+      {"|x|x|+1|", 3, "operator"},
+      {"|x|y", 3, "operator"},
+      {"x = y = 1", 6, "second '='"},
       {"atan2(x)", 0, "2 arguments"},
       {"sqrt(x, y)", 0, "1 argument"},
       {"x, y", 1, "','"},
-      {"x == 1", 2, "'=='"},
-      {"x**2", 1, "'**'"},
       {"x = y = z", 6, "second '='"},
       {"x;;y", 2, "nothing before"},
       {"z >= 0", 2, "domain"},
@@ -127,11 +210,14 @@ TEST(Formula, ErrorsPointAtTheColumn) {
       {"x99999999999999999999", 0, "largest dimension"},
       {"x + foo", 4, "'foo' is unknown"},
       {"Sin(x)", 0, "did you mean 'sin'"},
-      {"ln(x)", 0, "did you mean 'log'"},
-      {"xy = 1", 0, "x*y"},
-      {"x\xC2\xB2 + y", 1, "write ^2"},
       {"x # y", 2, "means nothing"},
       {"x \x01", 2, "means nothing"},
+      {"\\frac{x}{2}", 0, "LaTeX"},
+      {"x\u2081 + y", 1, "lowered"},
+      {"\U0001D465 + y", 0, "plain letter"},
+      {"\u0445 + y", 0, "looks like x"},
+      {"foo(x)", 0, "functions: sqrt"},
+      {"cot(x)", 0, "1/tan(t)"},
   };
   for (const Case& c : cases) {
     try {
@@ -157,8 +243,8 @@ TEST(Formula, CaretStandsUnderTheColumnInAWindowOfLongFormulas) {
   EXPECT_LT(line.size(), 120u);
   EXPECT_EQ(line[what.size() - second - 2], 'q') << what;
   // A character of two bytes before the column does not move the caret.
-  const std::string utf8 = error_of("\xCF\x80 x");
-  EXPECT_EQ(utf8.substr(utf8.rfind('\n') + 1), "  ^");
+  const std::string utf8 = error_of("\xCF\x80 $");
+  EXPECT_EQ(utf8.substr(utf8.rfind('\n') + 1), "    ^");
 }
 
 TEST(Formula, ParametersShadowNothing) {

@@ -14,6 +14,8 @@ namespace taut {
 struct FormulaOptions {
   /// Ambient dimension; unset = the largest variable used (x y z w, or x1 x2 ...), at least 2.
   std::optional<Index> dim = {};
+  /// Names of the variables in place of x y z w or x1 x2 ..., in order; all of them count for the dimension.
+  std::vector<std::string> variables = {};
   /// Parameters: names usable in the formula besides the variables, pi and e.
   std::map<std::string, double> parameters = {};
   /// Inequalities "lhs >= rhs" or "lhs <= rhs" that cut the surface.
@@ -23,7 +25,8 @@ struct FormulaOptions {
 
 /// Reads `lhs = rhs` or an expression meaning `= 0`, several equations separated by `;`, and compiles it.
 /// The grammar, the functions, their value and derivative at kinks and poles, and the limits on size are documented in
-/// docs/formula.md. Throws ParseError (with a caret under the column) or InvalidArgument.
+/// docs/formula.md. Throws ParseError (with a caret under the column; UnknownName where a name means nothing) or
+/// InvalidArgument.
 [[nodiscard]] Surface parse_surface(std::string_view formula, const FormulaOptions& options = {});
 
 /// The same for a function R^d -> R^m without the rule m < d: what a domain is made of. An inequality stands for what

@@ -23,19 +23,22 @@ std::string quoted(std::string_view text) {
 
 ParseError parse_error(std::string_view text, std::size_t column, const std::string& reason) {
   column = std::min(column, text.size());
-  std::size_t begin = column > kWindowBefore ? column - kWindowBefore : 0;
-  std::size_t end = std::min(text.size(), column + kWindowAfter);
-  while (begin > 0 && continues_character(text[begin])) --begin;
-  while (end < text.size() && continues_character(text[end])) ++end;
+  // Of a formula that came from a file, the line.
+  const std::size_t line_begin = column == 0 ? 0 : text.rfind('\n', column - 1) + 1;
+  const std::size_t line_end = std::min(text.find('\n', column), text.size());
+  std::size_t begin = std::max(line_begin, column > kWindowBefore ? column - kWindowBefore : 0);
+  std::size_t end = std::min(line_end, column + kWindowAfter);
+  while (begin > line_begin && continues_character(text[begin])) --begin;
+  while (end < line_end && continues_character(text[end])) ++end;
 
-  std::string line = begin > 0 ? "..." : "";
+  std::string line = begin > line_begin ? "..." : "";
   std::size_t caret = line.size();
   for (std::size_t i = begin; i < end; ++i) {
     const bool control = static_cast<unsigned char>(text[i]) < 0x20 || text[i] == 0x7f;
     line += control ? ' ' : text[i];
     if (i < column && !continues_character(text[i])) ++caret;
   }
-  if (end < text.size()) line += "...";
+  if (end < line_end) line += "...";
   return ParseError(reason + "\n  " + line + "\n  " + std::string(caret, ' ') + "^", column);
 }
 

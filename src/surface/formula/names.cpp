@@ -9,6 +9,7 @@
 #include "surface/formula/diagnostic.hpp"
 #include "surface/formula/limits.hpp"
 #include "taut/core/error.hpp"
+#include "taut/core/nearest_name.hpp"
 
 namespace taut::detail {
 namespace {
@@ -24,11 +25,36 @@ constexpr Function kFunctions[] = {
     {"max", Op::maximum, 2, kAny}, {"pow", Op::power, 2, 2}, {"sign", Op::sign, 1, 1},
 };
 
+/// Other names of these functions.
+constexpr std::pair<std::string_view, std::string_view> kSynonyms[] = {
+    {"ln", "log"},        {"arcsin", "asin"}, {"arccos", "acos"}, {"arctan", "atan"},
+    {"arctan2", "atan2"}, {"fabs", "abs"},    {"sgn", "sign"},
+};
+
 /// What people coming from elsewhere write.
 constexpr std::pair<std::string_view, std::string_view> kForeignNames[] = {
-    {"ln", "log"},   {"arcsin", "asin"}, {"arccos", "acos"}, {"arctan", "atan"}, {"arctan2", "atan2"},
-    {"fabs", "abs"}, {"sgn", "sign"},    {"power", "pow"},   {"tg", "tan"},      {"sh", "sinh"},
-    {"ch", "cosh"},  {"th", "tanh"},     {"minimum", "min"}, {"maximum", "max"}, {"Pi", "pi"},
+    {"power", "pow"},
+    {"tg", "tan"},
+    {"sh", "sinh"},
+    {"ch", "cosh"},
+    {"th", "tanh"},
+    {"minimum", "min"},
+    {"maximum", "max"},
+    {"Pi", "pi"},
+    {"PI", "pi"},
+    {"log10", "log(t)/log(10)"},
+    {"log2", "log(t)/log(2)"},
+    {"lg", "log(t)/log(10)"},
+    {"cot", "1/tan(t)"},
+    {"ctg", "1/tan(t)"},
+    {"sec", "1/cos(t)"},
+    {"csc", "1/sin(t)"},
+    {"asinh", "log(t+sqrt(t^2+1))"},
+    {"acosh", "log(t+sqrt(t^2-1))"},
+    {"atanh", "log((1+t)/(1-t))/2"},
+    {"coth", "1/tanh(t)"},
+    {"sech", "1/cosh(t)"},
+    {"and", ";"},
 };
 
 bool is_numbered(std::string_view name) {
@@ -38,51 +64,61 @@ bool is_numbered(std::string_view name) {
 
 bool is_letter_variable(std::string_view name) { return name.size() == 1 && kLetters.find(name[0]) != kLetters.npos; }
 
-bool is_name(std::string_view name) {
-  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-  return !name.empty() && letter(name[0]) &&
-         std::all_of(name.begin(), name.end(), [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-}
-
-/// Levenshtein distance, letter case ignored at half price so that `Sin` is nearest to `sin`.
-double distance(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  std::vector<double> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<double>(j);
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    double diagonal = row[0];
-    row[0] = static_cast<double>(i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const double change = a[i - 1] == b[j - 1] ? 0 : lower(a[i - 1]) == lower(b[j - 1]) ? 0.5 : 1;
-      const double best = std::min({row[j] + 1, row[j - 1] + 1, diagonal + change});
-      diagonal = row[j];
-      row[j] = best;
-    }
-  }
-  return row[b.size()];
-}
-
 }  // namespace
 
 const Function* find_function(std::string_view name) {
+  for (const auto& [synonym, ours] : kSynonyms) {
+    if (name == synonym) name = ours;
+  }
   const auto* found = std::find_if(std::begin(kFunctions), std::end(kFunctions),
                                    [&](const Function& function) { return function.name == name; });
   return found == std::end(kFunctions) ? nullptr : found;
 }
 
-Names::Names(const std::map<std::string, double>& parameters, std::optional<Index> dim)
-    : parameters_(&parameters), dim_(dim) {
+Names::Names(const std::vector<std::string>& variables, const std::map<std::string, double>& parameters,
+             std::optional<Index> dim)
+    : variables_(&variables), parameters_(&parameters), dim_(dim) {
+  for (const std::string& name : variables) {
+    check_new("the variable", name);
+    if (std::count(variables.begin(), variables.end(), name) > 1) {
+      throw InvalidArgument("the variable " + quoted(name) + " is named twice");
+    }
+  }
+  const auto num_variables = static_cast<Index>(variables.size());
+  if (!variables.empty() && dim.value_or(num_variables) != num_variables) {
+    throw InvalidArgument(std::to_string(num_variables) + " variables are named, but the dimension is " +
+                          std::to_string(*dim));
+  }
+  variables_used_ = num_variables;
   for (const auto& [name, value] : parameters) {
-    const std::string who = "the parameter " + quoted(name);
-    if (!is_name(name)) throw InvalidArgument(who + " is not a name: letters, digits and _, a letter first");
-    if (is_letter_variable(name) || is_numbered(name)) throw InvalidArgument(who + " is the name of a variable");
-    if (name == "pi" || name == "e") throw InvalidArgument(who + " is the name of a constant");
-    if (find_function(name) != nullptr) throw InvalidArgument(who + " is the name of a function");
-    if (!std::isfinite(value)) throw InvalidArgument(who + " is " + std::to_string(value) + ", it must be finite");
+    check_new("the parameter", name);
+    const bool is_variable =
+        variables.empty() ? is_letter_variable(name) || is_numbered(name) : own_variable(name).has_value();
+    if (is_variable) throw InvalidArgument("the parameter " + quoted(name) + " is the name of a variable");
+    if (!std::isfinite(value)) {
+      throw InvalidArgument("the parameter " + quoted(name) + " is " + std::to_string(value) + ", it must be finite");
+    }
   }
 }
 
+void Names::check_new(const std::string& kind, const std::string& name) const {
+  const std::string who = kind + " " + quoted(name);
+  if (!is_name(name)) throw InvalidArgument(who + " is not a name: letters, digits and _, a letter first");
+  if (name == "pi" || name == "e") throw InvalidArgument(who + " is the name of a constant");
+  if (find_function(name) != nullptr) throw InvalidArgument(who + " is the name of a function");
+}
+
+std::optional<Index> Names::own_variable(std::string_view name) const {
+  const auto found = std::find(variables_->begin(), variables_->end(), name);
+  if (found == variables_->end()) return std::nullopt;
+  return static_cast<Index>(found - variables_->begin());
+}
+
 std::optional<std::uint32_t> Names::variable(std::string_view text, const Token& token) {
+  if (!variables_->empty()) {
+    const auto own = own_variable(token.text);
+    return own ? std::optional(static_cast<std::uint32_t>(*own)) : std::nullopt;
+  }
   Index index = 0;
   Style style = Style::letters;
   if (is_letter_variable(token.text)) {
@@ -126,41 +162,51 @@ std::optional<double> Names::value(std::string_view name) const {
   return found->second;
 }
 
-ParseError Names::unknown(std::string_view text, const Token& token) const {
+std::size_t Names::first_factor(std::string_view name) const {
+  if (!variables_->empty() || value(name)) return name.size();
+  std::size_t first = 0;
+  for (std::size_t at = 0; at < name.size();) {
+    std::size_t end = at + 1;
+    if (kLetters.find(name[at]) == kLetters.npos) return name.size();
+    while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
+    if (end > at + 1 && name[at] != 'x') return name.size();
+    if (first == 0) first = end;
+    at = end;
+  }
+  return first;
+}
+
+UnknownName Names::unknown(std::string_view text, const Token& token) const {
   constexpr std::size_t kLongestShown = 40;
   const std::string_view name = token.text.substr(0, kLongestShown);  // enough to compare
   std::string reason = quoted(name) + " is unknown";
 
   std::vector<std::string_view> known;
   for (const auto& [parameter, value] : *parameters_) known.push_back(parameter);
-  for (const char& letter : kLetters) known.emplace_back(&letter, 1);
+  for (const std::string& variable : *variables_) known.push_back(variable);
+  if (variables_->empty()) {
+    for (const char& letter : kLetters) known.emplace_back(&letter, 1);
+  }
   known.insert(known.end(), {"pi", "e"});
   for (const Function& function : kFunctions) known.push_back(function.name);
 
-  std::string_view nearest;
-  double best = name.size() < 2 ? 0.5 : name.size() <= 4 ? 1 : 2;  // farther names are no suggestion
-  for (const std::string_view candidate : known) {
-    const double d = distance(name, candidate);
-    if (d < best || (d == best && nearest.empty())) {
-      best = d;
-      nearest = candidate;
-    }
-  }
+  std::string_view nearest = nearest_name(name, known);
   for (const auto& [foreign, ours] : kForeignNames) {
     if (name == foreign) nearest = ours;
   }
-  const bool product = name.find_first_not_of(kLetters) == name.npos;
-  if (product) {
-    reason += ": for a product write ";
-    for (std::size_t i = 0; i < name.size(); ++i) reason.append(i > 0 ? "*" : "").append(1, name[i]);
-  } else if (!nearest.empty()) {
-    reason += ", did you mean " + quoted(nearest) + "?";
+  if (!nearest.empty()) reason += ", did you mean " + quoted(nearest) + "?";
+
+  const std::size_t next = text.find_first_not_of(' ', token.end);
+  if (next != text.npos && text[next] == '(') {
+    reason += " (functions:";
+    for (const Function& function : kFunctions) reason.append(" ").append(function.name);
+    return {parse_error(text, token.column, reason + ")").what(), token.column, std::string(token.text)};
   }
-  reason += " (known: x y z w or x1 x2 ..., pi, e";
+  reason += " (known: ";
+  for (const std::string& variable : *variables_) reason += variable + ", ";
+  reason += variables_->empty() ? "x y z w or x1 x2 ..., pi, e" : "pi, e";
   for (const auto& [parameter, value] : *parameters_) reason += ", " + parameter;
-  reason += "; functions";
-  for (const Function& function : kFunctions) reason.append(" ").append(function.name);
-  return parse_error(text, token.column, reason + ")");
+  return {parse_error(text, token.column, reason + ")").what(), token.column, std::string(token.text)};
 }
 
 }  // namespace taut::detail

@@ -4,11 +4,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "surface/formula/expression.hpp"
 #include "surface/formula/lexer.hpp"
-#include "taut/core/error.hpp"
 #include "taut/core/types.hpp"
+#include "taut/surface/unknown_name.hpp"
 
 namespace taut::detail {
 
@@ -25,9 +26,11 @@ struct Function {
 /// What the names in a formula mean: variables, parameters, pi and e.
 class Names {
  public:
-  /// `dim` as the user asked for it. Throws InvalidArgument when a parameter is not finite, not a name, or already
-  /// means something.
-  Names(const std::map<std::string, double>& parameters, std::optional<Index> dim);
+  /// `variables` are the user's own, in order; empty stands for x y z w or x1 x2 .... `dim` as the user asked for it.
+  /// Throws InvalidArgument when a variable or parameter is no name or already means something, and when a parameter is
+  /// not finite.
+  Names(const std::vector<std::string>& variables, const std::map<std::string, double>& parameters,
+        std::optional<Index> dim);
 
   /// Variable (from 0) that `token` names, if it does. Throws ParseError for x0, for more than dim, and where letters
   /// x y z w and numbered variables are mixed.
@@ -36,8 +39,12 @@ class Names {
   /// The value of a parameter or of pi, e.
   [[nodiscard]] std::optional<double> value(std::string_view name) const;
 
+  /// How many bytes of `name` are its first factor: of "xy", which means nothing by itself, one. All of a name that
+  /// means something, or that is no product of variables.
+  [[nodiscard]] std::size_t first_factor(std::string_view name) const;
+
   /// Explains why `token` is unknown, with the nearest name that is known.
-  [[nodiscard]] ParseError unknown(std::string_view text, const Token& token) const;
+  [[nodiscard]] UnknownName unknown(std::string_view text, const Token& token) const;
 
   /// 1 + the largest variable seen so far; 0 = none.
   [[nodiscard]] Index variables_used() const { return variables_used_; }
@@ -45,6 +52,10 @@ class Names {
  private:
   enum class Style { undecided, letters, numbers };
 
+  void check_new(const std::string& kind, const std::string& name) const;
+  [[nodiscard]] std::optional<Index> own_variable(std::string_view name) const;
+
+  const std::vector<std::string>* variables_;
   const std::map<std::string, double>* parameters_;
   std::optional<Index> dim_;
   Style style_ = Style::undecided;

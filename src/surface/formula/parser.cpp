@@ -19,9 +19,12 @@ struct Operator {
   std::size_t column;
 };
 
-/// An open parenthesis or function call, or the whole expression: where its parts begin on the shared stacks.
+/// An open parenthesis, function call or absolute value, or the whole expression: where its parts begin on the shared
+/// stacks.
 struct Frame {
-  const Function* function = nullptr;
+  const Function* function = nullptr;  // of |...|: abs
+  bool bars = false;
+  double power = 1;  // of the call's value, as in sin^2(x)
   std::size_t column = 0;
   std::size_t operators = 0;
   std::size_t terms = 0;
@@ -45,10 +48,15 @@ class Parser {
   bool operand();        // reads one operand, or an opening (then false: another operand must follow)
   bool after_operand();  // reads what follows an operand; false at the end of the expression
   void name();
+  bool function_call(const Function& function);
+  double power_of_call(const Function& function);
+  void bare_argument(const Function& function, std::size_t column, double power);
+  void superscript();
   void close();
   void implicit_product();
+  [[nodiscard]] bool ends_an_exponent() const;
 
-  void push_frame(const Function* function, std::size_t column);
+  Frame& push_frame(const Function* function, std::size_t column);
   void reduce(int precedence);
   void end_term(bool minus, std::size_t column);
   NodeId end_sum();
@@ -58,6 +66,9 @@ class Parser {
   void advance() {
     previous_ = token_;
     token_ = lexer_.next();
+    if (token_.kind != TokenKind::name) return;
+    const std::size_t length = names_.first_factor(token_.text);
+    if (length < token_.text.size()) token_ = lexer_.shorten(token_, length);
   }
   [[noreturn]] void fail(std::size_t column, const std::string& reason) const {
     throw parse_error(lexer_.text(), column, reason);
@@ -151,6 +162,7 @@ NodeId Parser::expression() {
   } while (after_operand());
   if (frames_.size() > 1) {
     const Frame& open = frames_.back();
+    if (open.bars) fail(open.column, "this '|' is never closed");
     fail(open.column, open.function ? "the '(' of this " + std::string(open.function->name) + " is never closed"
                                     : "this '(' is never closed");
   }
@@ -159,8 +171,14 @@ NodeId Parser::expression() {
   return result;
 }
 
-void Parser::push_frame(const Function* function, std::size_t column) {
-  frames_.push_back({function, column, operators_.size(), terms_.size(), values_.size(), false, column});
+Frame& Parser::push_frame(const Function* function, std::size_t column) {
+  frames_.push_back({.function = function,
+                     .column = column,
+                     .operators = operators_.size(),
+                     .terms = terms_.size(),
+                     .arguments = values_.size(),
+                     .sign_column = column});
+  return frames_.back();
 }
 
 bool Parser::operand() {
@@ -171,22 +189,16 @@ bool Parser::operand() {
       advance();
       return true;
     case TokenKind::name: {
-      const Function* function = find_function(token_.text);
-      if (function == nullptr) {
-        name();
-        return true;
-      }
-      advance();
-      if (token_.kind != TokenKind::open) {
-        fail(column, std::string(function->name) +
-                         " is a function and needs parentheses: " + std::string(function->name) + "(...)");
-      }
-      push_frame(function, column);
-      advance();
-      return false;
+      if (const Function* found = find_function(token_.text)) return function_call(*found);
+      name();
+      return true;
     }
     case TokenKind::open:
       push_frame(nullptr, column);
+      advance();
+      return false;
+    case TokenKind::bar:
+      push_frame(find_function("abs"), column).bars = true;
       advance();
       return false;
     case TokenKind::minus: operators_.push_back({Op::negate, kSign, column}); [[fallthrough]];
@@ -212,11 +224,88 @@ void Parser::name() {
   advance();
 }
 
+/// A call; true if it was read to its end: its argument may do without parentheses.
+bool Parser::function_call(const Function& function) {
+  const std::size_t column = token_.column;
+  advance();
+  const double power = power_of_call(function);
+  if (token_.kind != TokenKind::open) {
+    bare_argument(function, column, power);
+    return true;
+  }
+  push_frame(&function, column).power = power;
+  advance();
+  return false;
+}
+
+/// The power between a function's name and its argument, as in sin^2(x); 1 if there is none.
+double Parser::power_of_call(const Function& function) {
+  if (token_.kind != TokenKind::power && token_.kind != TokenKind::superscript) return 1;
+  const std::size_t column = token_.column;
+  if (token_.kind == TokenKind::power) advance();
+  const double power = token_.number;
+  const bool exponent = token_.kind == TokenKind::number || token_.kind == TokenKind::superscript;
+  if (!exponent || power < 1 || power != std::floor(power)) {
+    fail(column, "only a whole power may stand here: write " + std::string(function.name) + "(...)^p, or " +
+                     "the inverse function's own name");
+  }
+  advance();
+  return power;
+}
+
+/// One number or name without parentheses, as in sin x. What follows must not be taken for a part of it.
+void Parser::bare_argument(const Function& function, std::size_t column, double power) {
+  const std::string name(function.name);
+  const bool operand =
+      token_.kind == TokenKind::number || (token_.kind == TokenKind::name && find_function(token_.text) == nullptr);
+  if (!operand || function.max_arguments > 1) {
+    fail(column, name + " is a function and needs parentheses: " + name + "(...)");
+  }
+  const std::string argument(token_.text);
+  if (token_.kind == TokenKind::number) {
+    values_.push_back(graph_.constant(token_.number));
+    advance();
+  } else {
+    this->name();
+  }
+  const NodeId value = call(function, column, values_.size() - 1);
+  values_.back() = power == 1 ? value : checked(graph_.binary(Op::power, value, graph_.constant(power)), column);
+  const TokenKind next = token_.kind;
+  const bool continues = next == TokenKind::power || next == TokenKind::superscript || next == TokenKind::divide ||
+                         next == TokenKind::number || next == TokenKind::open ||
+                         (next == TokenKind::bar && !frames_.back().bars) ||
+                         (next == TokenKind::name && find_function(token_.text) == nullptr);
+  if (continues) {
+    fail(token_.column, name + " " + argument + " " + shown() + " can be read two ways: write " + name + "(...)");
+  }
+}
+
+/// x² = x^2
+void Parser::superscript() {
+  operators_.push_back({Op::power, kPower, token_.column});
+  values_.push_back(graph_.constant(token_.number));
+  advance();
+  if (token_.kind == TokenKind::power || token_.kind == TokenKind::superscript) {
+    fail(token_.column, "two powers in a row: use parentheses");
+  }
+}
+
 bool Parser::after_operand() {
   while (true) {
     const Token token = token_;
     switch (token.kind) {
-      case TokenKind::close: close(); continue;
+      case TokenKind::close:
+        if (frames_.back().bars) fail(frames_.back().column, "this '|' is never closed");
+        close();
+        continue;
+      case TokenKind::superscript: superscript(); continue;
+      case TokenKind::bar:
+        if (frames_.back().bars) {
+          close();
+          continue;
+        }
+        implicit_product();
+        return true;
       case TokenKind::comma: {
         Frame& frame = frames_.back();
         if (frame.function == nullptr) {
@@ -253,11 +342,14 @@ bool Parser::after_operand() {
 
 void Parser::implicit_product() {
   const std::size_t column = token_.column;
-  const bool left = previous_.kind == TokenKind::number || previous_.kind == TokenKind::close;
-  if (!left && token_.kind == TokenKind::open) {
-    fail(previous_.column, quoted(previous_.text) + " is not a function: for a product put a * before the '('");
+  // |x|y|z| has two readings, and which bar opens is only told by the operators between them.
+  if (previous_.kind == TokenKind::bar) fail(column, "an operator is missing between '|' and " + shown());
+  if (token_.kind == TokenKind::number) fail(column, "an operator is missing before " + shown());
+  const bool glued = previous_.kind == TokenKind::name && previous_.end == column;
+  if (glued && token_.kind == TokenKind::open && previous_.text == "e") {
+    fail(previous_.column, "'e' is a number and no function: write exp(...), or e*(...) for a product");
   }
-  if (!left || token_.kind == TokenKind::number) fail(column, "an operator is missing before " + shown());
+  if (glued && ends_an_exponent()) fail(column, "a^b c can be read two ways: write a^(b*c) or a^b*c");
   reduce(kSign);
   if (operators_.size() > frames_.back().operators && operators_.back().op == Op::divide) {
     fail(column, "a/b c can be read two ways: write a/(b*c) or (a/b)*c");
@@ -266,16 +358,24 @@ void Parser::implicit_product() {
   operators_.push_back({Op::multiply, kProduct, column});
 }
 
+/// Is the last operand read an exponent?
+bool Parser::ends_an_exponent() const {
+  std::size_t n = operators_.size();
+  while (n > frames_.back().operators && operators_[n - 1].op == Op::negate) --n;
+  return n > frames_.back().operators && operators_[n - 1].op == Op::power;
+}
+
+/// Ends what the innermost frame has opened.
 void Parser::close() {
   if (frames_.size() == 1) fail(token_.column, "this ')' closes nothing");
   const NodeId inner = end_sum();
   const Frame frame = frames_.back();
   frames_.pop_back();
-  if (frame.function == nullptr) {
-    values_.push_back(inner);
-  } else {
-    values_.push_back(inner);
-    const NodeId result = call(*frame.function, frame.column, frame.arguments);
+  values_.push_back(inner);
+  if (frame.function != nullptr) {
+    NodeId result = call(*frame.function, frame.column, frame.arguments);
+    if (frame.power != 1)
+      result = checked(graph_.binary(Op::power, result, graph_.constant(frame.power)), frame.column);
     values_.resize(frame.arguments);
     values_.push_back(result);
   }
