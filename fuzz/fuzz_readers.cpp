@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -30,10 +31,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (size < 2) return 0;
   const std::string& extension = extensions[data[0] % extensions.size()];
   const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
-  try {
-    check(taut::detail::parse_point_cloud({"input" + extension, bytes, {}}));
-  } catch (const taut::IoError& error) {
-    require(std::string(error.what()).find('\n') == std::string::npos);
+  // Tables without a header are read in another way where the user says how many columns are coordinates.
+  for (const std::optional<taut::Index> dim : {std::optional<taut::Index>(), std::optional<taut::Index>(3)}) {
+    try {
+      check(taut::detail::parse_point_cloud({"input" + extension, bytes, {}}, dim));
+    } catch (const taut::IoError& error) {
+      require(std::string(error.what()).find('\n') == std::string::npos);
+    }
   }
   std::istringstream in(bytes);
   taut::CsvRows rows(in, "input");

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/column_roles.hpp"
 #include "io/input_file.hpp"
 #include "io/row_parser.hpp"
 #include "io/text_reader.hpp"
@@ -71,6 +72,7 @@ namespace {
 /// The line without comment and the blanks around it.
 std::string_view stripped(std::string_view line) {
   line = line.substr(0, line.find('#'));
+  if (line.starts_with("//") || line.starts_with("%")) return {};
   while (!line.empty() && detail::is_blank(line.front())) line.remove_prefix(1);
   while (!line.empty() && detail::is_blank(line.back())) line.remove_suffix(1);
   return line;

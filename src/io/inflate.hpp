@@ -13,4 +13,7 @@ namespace taut::detail {
 /// damaged data, and where Taut was built without zlib.
 [[nodiscard]] std::string inflate(const InputFile& file, std::string_view packed, std::size_t most);
 
+/// Unpacks all of a gzip file in place. Throws IoError for data that are damaged, cut short, or no gzip data.
+void gunzip(InputFile& file);
+
 }  // namespace taut::detail

@@ -4,6 +4,7 @@
 #include <array>
 #include <new>
 
+#include "io/inflate.hpp"
 #include "io/readers.hpp"
 
 namespace taut {
@@ -14,7 +15,8 @@ struct Format {
   std::string_view extension;
   std::string_view kind;  // as `recognise` calls it; empty when such files have no mark of their own
   bool text;              // may hold no zero byte
-  PointCloud (*read)(const InputFile&);
+  PointCloud (*read)(const InputFile&) = nullptr;
+  ColumnFormat columns = ColumnFormat::spatial;  // without a reader of its own: lines of numbers
 };
 
 constexpr std::array kFormats = {
@@ -22,13 +24,23 @@ constexpr std::array kFormats = {
     Format{".obj", "", true, read_obj},
     Format{".off", "an OFF file", true, read_off},
     Format{".stl", "an STL file", false, read_stl},
-    Format{".xyz", "", true, [](const InputFile& file) { return read_columns(file, ColumnFormat::xyz); }},
-    Format{".pts", "", true, [](const InputFile& file) { return read_columns(file, ColumnFormat::pts); }},
-    Format{".pwn", "", true, [](const InputFile& file) { return read_columns(file, ColumnFormat::pwn); }},
+    Format{".xyz", "", true},
+    Format{".pts", "", true},
+    Format{".asc", "", true},
+    Format{".txt", "", true},
+    Format{".pwn", "", true, nullptr, ColumnFormat::pwn},
     Format{".pcd", "a PCD file", false, read_pcd},
-    Format{".csv", "", true, [](const InputFile& file) { return read_columns(file, ColumnFormat::csv); }},
+    Format{".csv", "", true, nullptr, ColumnFormat::any},
+    Format{".tsv", "", true, nullptr, ColumnFormat::any},
     Format{".npy", "a NumPy array", false, read_npy},
 };
+
+constexpr std::string_view kCompressed = ".gz";
+
+/// "scan.ply" of "scan.ply.gz"
+std::filesystem::path without_gz(const std::filesystem::path& path) {
+  return lower_extension(path) == kCompressed ? path.parent_path() / path.stem() : path;
+}
 
 std::string known_extensions() {
   std::string list;
@@ -41,17 +53,22 @@ std::string known_extensions() {
 
 /// Throws IoError for an extension nobody reads.
 Format format_of(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_extension(without_gz(path));
   const auto* format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.extension == extension; });
   if (format != kFormats.end()) return *format;
   const std::string problem = extension.empty() ? "the name has no extension" : "unknown extension " + quote(extension);
-  throw IoError(path.string(), problem + "; point clouds and meshes are read from " + known_extensions());
+  throw IoError(path.string(), problem + "; point clouds and meshes are read from " + known_extensions() +
+                                   " (also compressed, as .ply.gz)");
 }
 
 /// What every format promises: some points, all finite, normals finite or zero.
-void check_cloud(const InputFile& file, PointCloud& cloud) {
+void check_cloud(const InputFile& file, PointCloud& cloud, std::optional<Index> dim) {
   if (cloud.size() == 0) file.fail("holds no points; check how it was written");
+  if (dim && cloud.dim() != *dim) {
+    file.fail("its points have " + std::to_string(cloud.dim()) + " coordinates where " + std::to_string(*dim) +
+              " are needed");
+  }
   if (static_cast<std::uint64_t>(cloud.size()) > kMostPoints) {
     file.fail("holds " + std::to_string(cloud.size()) + " points, more than 2^31 - 1; thin it");
   }
@@ -71,21 +88,26 @@ void check_cloud(const InputFile& file, PointCloud& cloud) {
     ++unknown;
   }
   if (unknown > 0) file.note(counted(unknown, "normal") + " not finite: taken as unknown");
+  drop_missing_values(file, cloud);
 }
 
 }  // namespace
 
-PointCloud parse_point_cloud(InputFile file) {
+PointCloud parse_point_cloud(InputFile file, std::optional<Index> dim) {
   const Format format = format_of(file.path);
-  const std::string_view kind = recognise(file.bytes);
-  if (!kind.empty() && kind != format.kind) {
-    file.fail("the content is " + std::string(kind) + ", not what " + std::string(format.extension) +
-              " stands for; rename, unpack or convert it");
-  }
-  if (format.text) normalise_text(file);
   try {
-    PointCloud cloud = format.read(file);
-    check_cloud(file, cloud);
+    if (lower_extension(file.path) == kCompressed) gunzip(file);
+    const std::string_view kind = recognise(file.bytes);
+    if (!kind.empty() && kind != format.kind) {
+      file.fail("the content is " + std::string(kind) + ", not what " + std::string(format.extension) +
+                " stands for; rename, unpack or convert it");
+    }
+    if (format.text) normalise_text(file);
+    PointCloud cloud = format.read != nullptr ? format.read(file) : read_columns(file, format.columns, {.dim = dim});
+    check_cloud(file, cloud, dim);
+    if (!dim && format.read == read_npy && cloud.dim() > 3) {
+      file.note("its points lie in " + std::to_string(cloud.dim()) + " dimensions, one a column");
+    }
     return cloud;
   } catch (const std::bad_alloc&) {
     file.fail("its points do not fit into memory; thin the file");
@@ -116,10 +138,10 @@ const std::vector<std::string>& point_cloud_extensions() {
   return extensions;
 }
 
-PointCloud read_point_cloud(const std::filesystem::path& path, const Context& context) {
+PointCloud read_point_cloud(const std::filesystem::path& path, const Context& context, std::optional<Index> dim) {
   static_cast<void>(
       detail::format_of(path));  // an unknown extension is the clearer answer, even if the file is missing
-  return detail::parse_point_cloud(detail::read_file(path, context));
+  return detail::parse_point_cloud(detail::read_file(path, context), dim);
 }
 
 }  // namespace taut

@@ -102,7 +102,8 @@ PointCloud read_ascii(InputFile file) {
   std::size_t corners = 0;
   bool inside = false;  // a solid
   while (reader.next_line()) {
-    const std::string keyword = lower(reader.word());
+    std::string keyword = lower(reader.word());
+    if (keyword == "end") keyword += lower(reader.word());  // some write "end loop"
     if (keyword == "vertex") {
       if (corners == 3) reader.fail("a fourth vertex in one facet; STL holds triangles only, triangulate the mesh");
       for (std::size_t i = 0; i < 3; ++i)

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 namespace taut::detail {
 
 /// Reads what `read_point_cloud` promises from bytes already in memory; the path's extension decides the format.
-[[nodiscard]] PointCloud parse_point_cloud(InputFile file);
+[[nodiscard]] PointCloud parse_point_cloud(InputFile file, std::optional<Index> dim = {});
 
 // One function a format. Each throws IoError on anything wrong; `read_point_cloud` then checks what they share.
 [[nodiscard]] PointCloud read_ply(const InputFile& file);
@@ -22,9 +23,17 @@ namespace taut::detail {
 [[nodiscard]] PointCloud read_pcd(const InputFile& file);
 [[nodiscard]] PointCloud read_npy(const InputFile& file);
 
-/// Lines of numbers: what `.xyz`, `.pts`, `.pwn` and `.csv` have in common.
-enum class ColumnFormat { xyz, pts, pwn, csv };
-[[nodiscard]] PointCloud read_columns(const InputFile& file, ColumnFormat format);
+/// Lines of numbers: what `.xyz`, `.pts`, `.asc`, `.txt`, `.pwn`, `.csv` and `.tsv` have in common.
+enum class ColumnFormat {
+  spatial,  ///< x y z first, whatever follows
+  pwn,      ///< the same, or points and then normals, three numbers a line
+  any,      ///< a coordinate a column, in any dimension
+};
+struct ColumnOptions {
+  std::optional<Index> dim;  ///< how many columns are coordinates, where no header names them
+  bool whole_lines = false;  ///< then `dim` columns are all there may be
+};
+[[nodiscard]] PointCloud read_columns(const InputFile& file, ColumnFormat format, const ColumnOptions& options = {});
 
 /// d x n from numbers that stand point by point.
 [[nodiscard]] inline Points to_points(const std::vector<double>& values, Index dim) {
@@ -52,6 +61,9 @@ inline constexpr std::uint64_t kMostPoints = std::numeric_limits<int>::max();
 /// the least an entry takes; `where` names what declares it.
 void check_declared(const InputFile& file, std::uint64_t count, std::uint64_t bytes_each, std::uint64_t available,
                     const std::string& where);
+
+/// Leaves out points that stand for a missing value, such as 0,0,0 among coordinates of millions, and says which.
+void drop_missing_values(const InputFile& file, PointCloud& cloud);
 
 /// "coordinate x" .. "coordinate z", or "coordinate 7"
 [[nodiscard]] std::string coordinate_name(Index i);

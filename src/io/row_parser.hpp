@@ -6,42 +6,38 @@
 
 namespace taut::detail {
 
-/// Reads lines of numbers separated by commas, semicolons, or blanks; which of them, the first line decides.
+/// Reads lines of numbers separated by commas, semicolons, tabs or blanks; which of them, the first line decides.
+/// Values may stand in quotes. Decimal commas are read where they cannot be taken for separators: between semicolons,
+/// tabs or quotes.
 class RowParser {
  public:
-  /// Looks for the separator in the first line: a semicolon, else a comma, else blanks.
+  /// Looks for the separator in the first line: a semicolon, else a comma, else tabs where fields hold blanks, else
+  /// blanks and tabs alike.
   void choose_separator(std::string_view first_line);
   /// Reads only these columns (from 0), in this order, and skips the others, which may hold any text. Without a call,
   /// all columns are read.
   void select(std::vector<std::size_t> columns);
 
   /// Appends the numbers of `line` to `values`. Returns what is wrong, empty if nothing is.
-  [[nodiscard]] std::string parse(std::string_view line, std::vector<double>& values) const;
+  [[nodiscard]] std::string parse(std::string_view line, std::vector<double>& values);
   /// The fields of `line`, blanks and quotes around them removed.
   [[nodiscard]] std::vector<std::string_view> split(std::string_view line) const;
 
+  [[nodiscard]] char separator() const { return separator_; }
+  /// Has a line been read that writes decimals with a comma?
+  [[nodiscard]] bool decimal_commas() const { return seen_comma_; }
+
  private:
-  [[nodiscard]] std::string parse_selected(std::string_view line, std::vector<double>& values) const;
+  [[nodiscard]] std::string parse_fields(std::string_view line, std::vector<double>& values);
   [[nodiscard]] std::string explain(std::string_view line, std::size_t column) const;
 
-  char separator_ = ' ';
+  char separator_ = ' ';  // ' ' stands for blanks and tabs
   std::vector<std::size_t> columns_;
+  bool seen_comma_ = false;  // decimal signs in fields between which a comma does not separate
+  bool seen_point_ = false;
 };
 
-/// Does this look like a line of column names? It does when not every field is a number (nan and inf included) and none
-/// begins like one.
-[[nodiscard]] bool is_header(const std::vector<std::string_view>& fields);
-
-/// Which columns of a table are coordinates and which are normals.
-struct ColumnRoles {
-  std::vector<std::size_t> coordinates;
-  std::vector<std::size_t> normals;  ///< as many as coordinates, or none
-  std::vector<std::size_t> others;
-  bool named = false;  ///< the header has at least one of the names below
-};
-
-/// Reads the roles from column names: x y z w or x1 x2 ... for coordinates, nx ny nz (normal_x ...) or n1 n2 ... for
-/// normals, in any order and case. A header without any of these names makes every column a coordinate.
-[[nodiscard]] ColumnRoles roles_from_header(const std::vector<std::string_view>& names);
+/// Is the field a number as files without decimal commas write it, nan and inf included?
+[[nodiscard]] bool is_number(std::string_view field);
 
 }  // namespace taut::detail

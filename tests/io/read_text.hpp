@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,11 +14,12 @@
 namespace taut::test {
 
 /// Reads `bytes` as if they stood in a file of this name. Notes are appended to `notes`, if given.
-inline PointCloud read_as(std::string_view name, std::string_view bytes, std::vector<std::string>* notes = nullptr) {
+inline PointCloud read_as(std::string_view name, std::string_view bytes, std::vector<std::string>* notes = nullptr,
+                          std::optional<Index> dim = {}) {
   const TempFolder folder;
   Context context;
   if (notes != nullptr) context.note = [notes](std::string_view note) { notes->emplace_back(note); };
-  return read_point_cloud(folder.write(name, bytes), context);
+  return read_point_cloud(folder.write(name, bytes), context, dim);
 }
 
 /// The message of the IoError that reading `bytes` under this name throws, without the folder; empty if none is thrown.

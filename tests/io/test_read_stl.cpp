@@ -37,6 +37,14 @@ TEST(ReadStl, SeveralSolidsMakeOneCloud) {
   EXPECT_EQ(read_as("a.stl", solid + solid).faces.cols(), 2);
 }
 
+TEST(ReadStl, EndsMayBeWrittenInTwoWords) {
+  const PointCloud cloud = read_as("a.stl",
+                                   "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 "
+                                   "0\nend loop\nend facet\nEnd Solid part\n");
+  EXPECT_EQ(cloud.size(), 3);
+  EXPECT_EQ(cloud.faces.cols(), 1);
+}
+
 TEST(ReadStl, BinaryMayBeginWithSolid) {
   const PointCloud cloud =
       read_as("a.stl", binary({{0, 0, 0, 1, 0, 0, 1, 1, 0}, {0, 0, 0, 1, 1, 0, 0, 1, 0.1F}}, "solid cad"));
