@@ -97,7 +97,7 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
   detail::write_geometry(path, format, {mesh.vertices, mesh.normals, mesh.faces, {}, mesh.scalars});
 }
 
-void write_polylines(const std::filesystem::path& path, const Polylines& polylines) {
+void write_polylines(const std::filesystem::path& path, const Polylines& polylines, const PointsIn& normals) {
   const auto& format = detail::output_format(path, &detail::OutputFormat::lines, "curves");
   const Index dim = polylines.lines.empty() ? 3 : polylines.lines.front().rows();
   if (polylines.num_points() > detail::kMostIndexed) throw InvalidArgument("polylines: more than 2^31 - 1 points");
@@ -115,7 +115,7 @@ void write_polylines(const std::filesystem::path& path, const Polylines& polylin
     throw IoError(path.string(), ".npy holds one curve, there are " + std::to_string(polylines.lines.size()) +
                                      "; write .csv, .json or .vtp");
   }
-  detail::write_geometry(path, format, {points, Points(dim, 0), Eigen::Matrix3Xi(3, 0), starts, polylines.scalars});
+  detail::write_geometry(path, format, {points, normals, Eigen::Matrix3Xi(3, 0), starts, polylines.scalars});
 }
 
 void write_point_cloud(const std::filesystem::path& path, const PointCloud& cloud) {

@@ -22,7 +22,9 @@ void write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh);
 /// `.ply` (edges), `.obj` (lines), `.vtp`, `.csv` (a leading column `line` when there are several), `.npy` (one line
 /// only),
 /// `.json`. Curves outside R^3 go to `.csv`, `.npy` and `.json`; planar ones are given z = 0 elsewhere.
-void write_polylines(const std::filesystem::path& path, const Polylines& polylines);
+/// `normals` (d x all points, or none) and scalars go to `.ply`, `.vtp`, `.csv` and `.json`.
+void write_polylines(const std::filesystem::path& path, const Polylines& polylines,
+                     const PointsIn& normals = Points(0, 0));
 
 /// `.ply`, `.obj`, `.off`, `.vtp`, `.xyz`, `.csv`, `.npy` (points only), `.json`. d != 3 as for polylines.
 void write_point_cloud(const std::filesystem::path& path, const PointCloud& cloud);
