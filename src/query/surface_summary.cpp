@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <utility>
 
 #include "query/cell_levels.hpp"
 #include "taut/cells/components.hpp"
+#include "taut/cells/mesh_surface.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/diagnose.hpp"
 
@@ -27,6 +29,40 @@ Vector first_order_distances(const Surface& surface, const PointsIn& x) {
     distance(j) = std::sqrt(squared);
   }
   return distance;
+}
+
+/// Edges that one triangle alone has.
+Index count_boundary_edges(const Eigen::Matrix3Xi& faces) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(static_cast<std::size_t>(3 * faces.cols()));
+  for (Index f = 0; f < faces.cols(); ++f) {
+    for (Index i = 0; i < 3; ++i) edges.push_back(std::minmax(faces(i, f), faces((i + 1) % 3, f)));
+  }
+  std::ranges::sort(edges);
+  Index alone = 0;
+  for (std::size_t i = 0; i < edges.size();) {
+    const std::size_t first = i;
+    while (i < edges.size() && edges[i] == edges[first]) ++i;
+    if (i - first == 1) ++alone;
+  }
+  return alone;
+}
+
+SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, const Context& context) {
+  const SurfaceMesh mesh = mesh_surface(surface, grid, {}, context);
+  SurfaceShape shape;
+  for (Index f = 0; f < mesh.faces.cols(); ++f) {
+    const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f));
+    const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f));
+    const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f));
+    shape.area += (b - a).cross(c - a).norm() / 2;
+  }
+  const Index boundary = count_boundary_edges(mesh.faces);
+  const Index edges = (3 * mesh.faces.cols() + boundary) / 2;
+  shape.euler = mesh.vertices.cols() - edges + mesh.faces.cols();
+  shape.closed = boundary == 0 && mesh.faces.cols() > 0;
+  shape.cut_by_box = boundary > 0 && surface.domain() == nullptr && !surface.box();
+  return shape;
 }
 
 /// Why there is nothing to be seen, where the equations are the reason.
@@ -66,6 +102,7 @@ SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, 
         summary.num_layers = envelope->num_layers();
         summary.num_envelope_cells = envelope->num_cells();
       }
+      if (surface.dim() == 3 && surface.codim() == 1) summary.shape = shape_of(surface, cells->grid(), context);
       const Components found = components(cells->grid());
       summary.components.assign(static_cast<std::size_t>(found.count), 0);
       for (const std::int32_t label : found.label) ++summary.components[static_cast<std::size_t>(label)];

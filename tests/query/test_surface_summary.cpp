@@ -2,12 +2,40 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+#include <string>
+#include <vector>
+
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {
 namespace {
+
+TEST(SurfaceSummary, TellsAreaHandlesAndEnds) {
+  const double pi = std::numbers::pi;
+  struct Case {
+    const char* formula;
+    std::vector<std::string> domain;
+    double area;
+    Index euler;
+    bool closed;
+  };
+  for (const Case& c :
+       {Case{"x^2+y^2+z^2=1", {}, 4 * pi, 2, true},
+        Case{"(x^2+y^2+z^2+0.84)^2=4*(x^2+y^2)", {}, 4 * pi * pi * 0.4, 0, true},
+        Case{"x^2+y^2+z^2=1", {"z >= 0"}, 2 * pi, 1, false}, Case{"x^2+y^2=1", {"0 <= z <= 2"}, 4 * pi, 0, false}}) {
+    const SurfaceSummary summary = summarise(parse_surface(c.formula, {.domain = c.domain}));
+    ASSERT_TRUE(summary.shape) << c.formula;
+    EXPECT_NEAR(summary.shape->area, c.area, 0.02 * c.area) << c.formula;  // triangles of some 60 cells a length
+    EXPECT_EQ(summary.shape->euler, c.euler) << c.formula;
+    EXPECT_EQ(summary.shape->closed, c.closed) << c.formula;
+    EXPECT_FALSE(summary.shape->cut_by_box) << c.formula;
+  }
+  EXPECT_TRUE(summarise(parse_surface("z = x*y")).shape->cut_by_box);
+  EXPECT_FALSE(summarise(parse_surface("x^2+y^2=1")).shape);
+}
 
 TEST(SurfaceSummary, FindsTheSphereAndItsOneComponent) {
   const SurfaceSummary summary = summarise(test::unit_sphere());

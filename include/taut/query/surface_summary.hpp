@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,16 @@ struct SummaryOptions {
   Points seeds = {};   ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
 };
 
+/// The shape of a surface in space, from its display mesh on the summary's cells: the numbers of features that are
+/// thinner than a cell are not in them.
+struct SurfaceShape {
+  double area = 0;      ///< of the triangles, model units squared; off by the order of h^2
+  Index euler = 0;      ///< Euler characteristic V - E + F: 2 a closed body, less 2 a handle, less 1 a hole
+  bool closed = false;  ///< no triangle has an edge of its own
+  /// Open, though neither a domain nor a box of the user's ends it: the surface goes on beyond the box.
+  bool cut_by_box = false;
+};
+
 /// What a surface is, before asking it anything.
 struct SurfaceSummary {
   std::string kind;  ///< "formula", "rbf", "callback"
@@ -32,6 +43,7 @@ struct SurfaceSummary {
   Index num_layers = 0;                     ///< of the envelope around them, where one was asked for ...
   Index num_envelope_cells = 0;             ///< ... and all its cells
   std::vector<Index> components;            ///< cells of each connected component, largest first
+  std::optional<SurfaceShape> shape;        ///< where d = 3 and k = 1
   Index num_samples = 0;
   double sample_rms = 0;  ///< of |F| / |grad F| over the samples, model units
   double sample_max = 0;
