@@ -5,14 +5,29 @@
 #include <fstream>
 #include <iostream>
 #include <system_error>
+#include <utility>
 
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
 
 namespace taut::app {
 
-BatchOutput::BatchOutput(const std::filesystem::path& file, std::string_view request)
-    : file_(file), partial_(file.string() + ".partial") {
+namespace {
+
+bool answered(std::string_view line) {
+  std::size_t begin = 0;
+  for (int column = 0; column < 4; ++column) begin = line.find(',', begin) + 1;
+  return line.substr(begin, line.find(',', begin) - begin) == "ok";
+}
+
+}  // namespace
+
+BatchOutput::BatchOutput(const std::string& header) {
+  if (!header.empty()) write(header + "\n");
+}
+
+BatchOutput::BatchOutput(const std::filesystem::path& file, std::string_view request, std::string header_line)
+    : file_(file), partial_(file.string() + ".partial"), header_(std::move(header_line)) {
   const std::string header = "# " + std::string(request) + "\n";
   read_earlier(header);
   out_ = std::fopen(partial_.c_str(), num_done_ > 0 ? "ab" : "wb");
@@ -33,7 +48,7 @@ void BatchOutput::read_earlier(std::string_view header) {
   while (std::getline(in, line) && !in.eof()) {
     size += line.size() + 1;
     ++num_done_;
-    some_failed_ = some_failed_ || !line.ends_with(",ok");
+    some_failed_ = some_failed_ || !answered(line);
   }
   in.close();
   std::error_code error;
@@ -59,6 +74,7 @@ void BatchOutput::finish() {
   std::string line;
   std::getline(in, line);  // the request
   OutputFile out(file_);
+  if (!header_.empty()) out.write(header_ + "\n");
   std::string block(1 << 16, '\0');
   while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
     out.write(std::string_view(block.data(), static_cast<std::size_t>(in.gcount())));

@@ -13,16 +13,16 @@ namespace taut::app {
 /// they go to stdout.
 class BatchOutput {
  public:
-  /// To stdout.
-  BatchOutput() = default;
-  /// To `file`. `request`: one line that stands for the whole command; lines of an earlier run are kept if theirs was
-  /// the same. Throws IoError.
-  BatchOutput(const std::filesystem::path& file, std::string_view request);
+  /// To stdout, below `header`, a line of column names; empty for none.
+  explicit BatchOutput(const std::string& header);
+  /// To `file`, below `header`. `request`: one line that stands for the whole command; lines of an earlier run are kept
+  /// if theirs was the same. Throws IoError.
+  BatchOutput(const std::filesystem::path& file, std::string_view request, std::string header);
   BatchOutput(const BatchOutput&) = delete;
   BatchOutput& operator=(const BatchOutput&) = delete;
   ~BatchOutput();
 
-  /// Lines that an earlier run has left, and whether one of them ends in another status than "ok".
+  /// Lines that an earlier run has left, and whether the fifth column of one of them is another status than "ok".
   [[nodiscard]] std::size_t num_done() const { return num_done_; }
   [[nodiscard]] bool some_failed() const { return some_failed_; }
   [[nodiscard]] std::filesystem::path partial() const { return partial_; }
@@ -37,6 +37,7 @@ class BatchOutput {
 
   std::filesystem::path file_;
   std::filesystem::path partial_;
+  std::string header_;
   std::FILE* out_ = nullptr;  // null: stdout
   std::size_t num_done_ = 0;
   bool some_failed_ = false;

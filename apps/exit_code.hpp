@@ -16,6 +16,9 @@ enum ExitCode : int {
   kInterrupted = 130,
 };
 
+/// The status of a line of a batch that asks for nothing that can be answered; it stands in the place of a Status.
+inline constexpr const char* kBadInputStatus = "bad_input";
+
 [[nodiscard]] constexpr ExitCode exit_code(Status status) {
   switch (status) {
     case Status::ok: return kDone;

@@ -8,9 +8,11 @@
 #include <iostream>
 #include <memory>
 
+#include "batch_errors.hpp"
 #include "checks.hpp"
 #include "commands.hpp"
 #include "deliver_path.hpp"
+#include "input_files.hpp"
 #include "load_surface.hpp"
 #include "number_rows.hpp"
 #include "output.hpp"
@@ -34,6 +36,7 @@ struct ExpArguments {
   std::string rays;
   ExponentialOptions options;
   bool no_conjugate = false;
+  bool header = false;
   DeliveryArguments delivery;
 };
 
@@ -115,8 +118,16 @@ ExitCode run_one(const ExpArguments& arguments, const Surface& surface, const Co
                       context);
 }
 
+std::string ray_csv_header(Index d) {
+  std::string line;
+  for (const char* name : {"q", "w"}) {
+    for (Index i = 1; i <= d; ++i) line += fmt::format("{}{},", name, i);
+  }
+  return line + "error,status";
+}
+
 /// A ray as a line; one that stopped early, or never began, has no end point.
-std::string ray_csv(const RayResult& result, Index d, double asked) {
+std::string ray_csv(const RayResult& result, Index d, double asked, const std::string& problem) {
   std::string line;
   const bool arrived = result.point.size() == d && result.length == asked;
   for (const Vector* vector : {&result.point, &result.direction}) {
@@ -125,7 +136,7 @@ std::string ray_csv(const RayResult& result, Index d, double asked) {
   if (arrived) {
     line += fmt::format("{},{}", std::max(result.error, result.direction_error), to_string(result.status));
   } else {
-    line += fmt::format("inf,{}", to_string(result.status));
+    line += fmt::format("inf,{}", problem.empty() ? to_string(result.status) : kBadInputStatus);
   }
   return line;
 }
@@ -134,12 +145,13 @@ std::string ray_csv(const RayResult& result, Index d, double asked) {
 ExitCode run_rays(const ExpArguments& arguments, const Surface& surface, const Context& context) {
   constexpr Index kAtOnce = 4096;
   const Index d = surface.dim();
-  CsvRows rows(arguments.rays);
+  CsvRows rows = open_rows(arguments.rays);
+  BatchErrors errors(arguments.rays == "-" ? "standard input" : arguments.rays);
   ExponentialOptions options = arguments.options;
   options.conjugate = false;
   options.points = false;
   RaySolver solver(surface, options, context);
-  bool all_ok = true;
+  if (arguments.header) std::cout << ray_csv_header(d) << "\n";
   Index count = 0;
   const std::string takes = fmt::format("a ray takes {}, p1,...,pd,v1,...,vd,s", 2 * d + 1);
   for (;;) {
@@ -151,16 +163,13 @@ ExitCode run_rays(const ExpArguments& arguments, const Surface& surface, const C
     const std::vector<RayResult> results = solver.solve_many(from, directions, lengths);
     for (std::size_t j = 0; j < results.size(); ++j) {
       const RayResult& result = results[j];
-      if (result.status != Status::ok) {
-        all_ok = false;
-        const std::string& problem = block.problems[j].empty() ? result.message : block.problems[j];
-        print_error(fmt::format("{} line {}: {}", arguments.rays, block.lines[j], problem));
-      }
-      std::cout << ray_csv(result, d, lengths(static_cast<Index>(j))) << "\n";
+      const std::string& problem = block.problems[j];
+      if (result.status != Status::ok) errors.tell(block.lines[j], problem.empty() ? result.message : problem);
+      std::cout << ray_csv(result, d, lengths(static_cast<Index>(j)), problem) << "\n";
     }
     context.report("rays", -static_cast<double>(count += block.size()));
   }
-  return all_ok ? kDone : kSomeLinesFailed;
+  return errors.any() ? kSomeLinesFailed : kDone;
 }
 
 ExitCode run(ExpArguments arguments) {
@@ -173,7 +182,13 @@ ExitCode run(ExpArguments arguments) {
   if (rays && (arguments.delivery.json || !arguments.delivery.files.out.empty())) {
     throw UsageError("--rays writes its lines to stdout; --json and --out are for one ray");
   }
+  if (arguments.header && !rays) throw UsageError("--header is for the lines of --rays");
+  if (!arguments.surface.box.empty()) {
+    throw UsageError(
+        "--box has no effect on a ray, which is followed without looking around; cut the surface by --domain");
+  }
   arguments.delivery.files.check(OutputKind::path);
+  refuse_to_overwrite({arguments.surface.surface}, arguments.delivery.files.out);
   arguments.options.conjugate = !arguments.no_conjugate;
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
@@ -190,7 +205,7 @@ Run add_exp_command(CLI::App& app) {
   command.add_option("--dir", arguments->direction, "direction: 0,1,0; its part tangent to the surface counts");
   command.add_option("--length", arguments->length, "how far to go; negative: the other way")->check(any_number());
   command.add_option("--rays", arguments->rays,
-                     "rays p1,...,pd,v1,...,vd,s, one a line; writes q1,...,qd,w1,...,wd,error,status");
+                     "rays p1,...,pd,v1,...,vd,s, one a line, - = stdin; writes q1,...,qd,w1,...,wd,error,status");
   command.add_option("--tol", arguments->options.tolerance, "error a step may add (default: rounding)")
       ->check(number_between(0, 1e-3));
   command.add_option("--steps", arguments->options.max_steps, "give up after this many steps")
@@ -198,6 +213,7 @@ Run add_exp_command(CLI::App& app) {
       ->capture_default_str();
   command.add_flag("--no-conjugate", arguments->no_conjugate,
                    "do not look for conjugate points: faster in many dimensions");
+  command.add_flag("--header", arguments->header, "--rays: a first line with the columns' names");
   arguments->delivery.add_to(command);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };

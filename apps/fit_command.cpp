@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
+#include "checks.hpp"
 #include "commands.hpp"
 #include "load_surface.hpp"
 #include "points_argument.hpp"
@@ -21,6 +23,7 @@ namespace {
 struct FitArguments {
   CommonArguments common;
   std::string cloud;
+  std::optional<Index> dim;
   FitOptions options;
   std::string out;
 };
@@ -56,7 +59,7 @@ ExitCode run(const FitArguments& arguments) {
     throw UsageError("--out " + arguments.out + ": a model file ends in .taut");
   }
   const Context context = terminal_context(arguments.common.terminal);
-  const FitModel model = fit_file(arguments.cloud, arguments.options, context);
+  const FitModel model = fit_file(arguments.cloud, arguments.options, context, arguments.dim);
   write_model(arguments.out, model);
   clear_progress();
   std::visit(
@@ -76,9 +79,13 @@ ExitCode run(const FitArguments& arguments) {
 Run add_fit_command(CLI::App& app) {
   auto arguments = std::make_shared<FitArguments>();
   CLI::App& command = *app.add_subcommand("fit", "fit a surface to a point cloud and keep it in a file");
-  command.add_option("CLOUD", arguments->cloud, "points: .ply .obj .off .stl .xyz .pts .pwn .pcd .csv .npy")
+  command
+      .add_option("CLOUD", arguments->cloud,
+                  "points: .ply .obj .off .stl .xyz .pts .asc .txt .pwn .pcd .csv .tsv .npy, or one of them as .gz")
       ->required();
-  command.add_option("--out", arguments->out, "the model, a .taut file")->required();
+  command.add_option("-o,--out", arguments->out, "the model, a .taut file")->required();
+  command.add_option("--dim", arguments->dim, "how many columns of a table without a header are coordinates")
+      ->check(whole_number(2, 65535));
   add_fit_options(command, arguments->options);
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };

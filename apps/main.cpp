@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "checks.hpp"
+#include "command_line_errors.hpp"
 #include "commands.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
@@ -39,12 +40,13 @@ std::vector<std::string> shield_negatives(int argc, char** argv) {
     return text.size() > 1 && text[0] == '-' &&
            (std::isdigit(static_cast<unsigned char>(text[1])) != 0 || text[1] == '.');
   };
+  const auto short_option = [](const std::string& text) { return text == "-h" || text == "-o" || text == "-q"; };
   for (int i = 1; i < argc; ++i) {
     std::string text = argv[i];
     if (negative(text) && !arguments.empty() && arguments.back().starts_with("--") &&
         arguments.back().find('=') == std::string::npos) {
       arguments.back() += "=" + text;
-    } else if (i == 2 && text.size() > 1 && text[0] == '-' && text[1] != '-' && text != "-h") {
+    } else if (i == 2 && text.size() > 1 && text[0] == '-' && text[1] != '-' && !short_option(text)) {
       arguments.push_back(" " + text);
     } else {
       arguments.push_back(std::move(text));
@@ -77,30 +79,18 @@ ExitCode guarded(const Run& run) {
   }
 }
 
-/// What is wrong with the command's name; empty when nothing is.
-std::string check_command(const CLI::App& app, const std::vector<std::string>& arguments) {
-  if (!arguments.empty() && arguments.front().starts_with("-")) return "";
-  std::string names;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) {
-    if (!arguments.empty() && command->get_name() == arguments.front()) return "";
-    names += (names.empty() ? "" : ", ") + command->get_name();
-  }
-  const std::string problem =
-      arguments.empty() ? "give a command" : fmt::format("there is no command '{}'", arguments.front());
-  return fmt::format("{}; the commands are {} (see taut --help)", problem, names);
-}
-
-/// The first argument of a command that looks like an option and is none; empty when there is none such.
-std::string unknown_option(const CLI::App& command) {
-  const std::vector<std::string> extras = command.remaining();
-  const auto option = std::ranges::find_if(extras, [](const std::string& text) { return text.starts_with("-"); });
-  return option != extras.end() ? *option : "";
+/// "help" and "help path" as the options they stand for.
+void translate_help(std::vector<std::string>& arguments) {
+  if (arguments.empty() || arguments.front() != "help") return;
+  arguments.erase(arguments.begin());
+  if (arguments.size() > 1) arguments.resize(1);
+  arguments.emplace_back("--help");
 }
 
 int run_program(int argc, char** argv) {
   CLI::App app{kDescription, "taut"};
   app.footer(kFooter);
-  app.set_version_flag("--version", "taut " TAUT_VERSION);
+  app.set_version_flag("-V,--version", "taut " TAUT_VERSION);
   app.require_subcommand(1);
   app.fallthrough(false);
 
@@ -112,7 +102,10 @@ int run_program(int argc, char** argv) {
   }
 
   std::vector<std::string> arguments = shield_negatives(argc, argv);
-  if (const std::string problem = check_command(app, arguments); !problem.empty()) return fail(kWrongUsage, problem);
+  translate_help(arguments);
+  if (const std::string problem = explain_command(app, arguments); !problem.empty()) {
+    return fail(kWrongUsage, problem + " (see taut --help)");
+  }
   std::reverse(arguments.begin(), arguments.end());  // the order CLI11 wants
   try {
     app.parse(std::move(arguments));
@@ -125,11 +118,7 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     const auto chosen = app.get_subcommands();
     const std::string help = chosen.empty() ? "taut --help" : "taut " + chosen.front()->get_name() + " --help";
-    std::string problem = e.what();
-    if (const std::string option = chosen.empty() ? "" : unknown_option(*chosen.front()); !option.empty()) {
-      problem = fmt::format("there is no option {}", option);
-    }
-    return fail(kWrongUsage, fmt::format("{} (see {})", problem, help));
+    return fail(kWrongUsage, fmt::format("{} (see {})", explain(e, chosen.empty() ? app : *chosen.front()), help));
   }
   for (const auto& [command, run] : commands) {
     if (command->parsed()) return guarded(run);
@@ -142,7 +131,7 @@ int run_program(int argc, char** argv) {
 void CommonArguments::add_to(CLI::App& command) {
   command.add_option("--threads", terminal.threads, "threads; 0 = all cores (never changes a result)")
       ->check(whole_number(0, 4096));
-  command.add_flag("--quiet", terminal.quiet, "no notes and no progress on stderr");
+  command.add_flag("-q,--quiet", terminal.quiet, "no notes and no progress on stderr");
   command.add_flag("--progress", terminal.progress, "progress lines even when stderr is no terminal");
 }
 

@@ -8,6 +8,7 @@
 
 #include "cell_arguments.hpp"
 #include "commands.hpp"
+#include "input_files.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
 #include "report.hpp"
@@ -25,6 +26,7 @@ struct MeshArguments {
 };
 
 ExitCode run(const MeshArguments& arguments) {
+  refuse_to_overwrite({arguments.surface.surface}, arguments.files.out);
   arguments.files.check(OutputKind::mesh);
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "load_surface.hpp"
+#include "path_lines.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
@@ -241,7 +242,7 @@ CLI::Option* FileArguments::add_to(CLI::App& command, OutputKind kind, const std
                      "AZIMUTH,ELEVATION in degrees to look from in pictures (default: chosen): 0,0 is from +x, 90,0 "
                      "from +y, 0,90 from above");
   return command
-      .add_option("--out", out, fmt::format("{} to FILE, by extension (repeatable): {}", what, known_outputs(kind)))
+      .add_option("-o,--out", out, fmt::format("{} to FILE, by extension (repeatable): {}", what, known_outputs(kind)))
       ->allow_extra_args(false);
 }
 
@@ -306,11 +307,12 @@ void write_paths(const FileArguments& files, const PathOutput& output, const Con
       if (!scene) scene = PathScene(output, files).build(context);
       write_picture(file, extension, *scene);
     } else if (extension != kJson) {
-      Polylines lines;
+      std::vector<const PathResult*> paths;
       for (const SourcePaths& source : output.sources) {
-        for (const PathResult* path : source.paths) lines.lines.push_back(path->points);
+        paths.insert(paths.end(), source.paths.begin(), source.paths.end());
       }
-      write_polylines(file, lines);
+      const PathLines drawn = path_lines(output.surface, paths, output.evenly_spaced);
+      write_polylines(file, drawn.lines, drawn.normals);
     }
   }
 }

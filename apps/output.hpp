@@ -59,6 +59,7 @@ struct PathOutput {
   bool all_ways = false;               ///< show every other candidate of a single path, not only one as short
   std::string end_name = "to";         ///< what a single path's end is called
   std::vector<ScenePoint> marks = {};  ///< more points to show
+  Index evenly_spaced = 0;             ///< in files of points: so many points a path at equal arc lengths; 0 = its own
 };
 
 /// A field marched as the paths were.

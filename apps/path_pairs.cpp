@@ -8,13 +8,13 @@
 #include <memory>
 #include <vector>
 
+#include "batch_errors.hpp"
 #include "batch_output.hpp"
 #include "number_rows.hpp"
 #include "pairs_file.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/csv_rows.hpp"
-#include "terminal.hpp"
 
 namespace taut::app {
 namespace {
@@ -49,11 +49,11 @@ Survey survey(const PairsFile& file, Index d) {
 /// One line that stands for the request: a file of results made under another one is not continued.
 std::string request_line(const PairsRequest& request, const PairsFile& file) {
   const PathOptions& options = request.options;
-  std::string line =
-      fmt::format("taut path {} --pairs {} ({}) {} {} {} {} {} {} {} {} {} {} {}", request.surface, file.name(),
-                  file.version(), to_string(options.method), static_cast<int>(options.march),
-                  static_cast<int>(options.grid), options.envelope, options.cell, options.tolerance, options.spacing,
-                  options.beta, static_cast<int>(options.flow_step), static_cast<int>(options.flow_nodes), options.all);
+  std::string line = fmt::format(
+      "taut path {} --pairs {} ({}) {} {} {} {} {} {} {} {} {} {} {} {}", request.surface, file.name(), file.version(),
+      to_string(options.method), static_cast<int>(options.march), static_cast<int>(options.grid), options.envelope,
+      options.cell, options.tolerance, options.spacing, options.beta, static_cast<int>(options.flow_step),
+      static_cast<int>(options.flow_nodes), options.all, request.columns.unique);
   std::ranges::replace(line, '\n', ' ');
   return line;
 }
@@ -64,10 +64,12 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
   const Index d = surface.dim();
   const PairsFile file(request.file, context);
   const Survey found = survey(file, d);
+  const std::string header = request.header ? path_csv_header(request.columns) : "";
   const std::unique_ptr<BatchOutput> output =
-      request.out ? std::make_unique<BatchOutput>(*request.out, request_line(request, file))
-                  : std::make_unique<BatchOutput>();
-  bool all_ok = !output->some_failed();
+      request.out ? std::make_unique<BatchOutput>(*request.out, request_line(request, file), header)
+                  : std::make_unique<BatchOutput>(header);
+  BatchErrors errors(file.name());
+  const bool ok_before = !output->some_failed();
   CsvRows rows = file.rows();
   Index done = 0;
   const auto num_earlier = static_cast<Index>(output->num_done());
@@ -95,11 +97,9 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
     std::string lines;
     for (std::size_t k = 0; k < results.size(); ++k) {
       const PathResult& result = results[k];
-      lines += path_csv(result) + "\n";
-      if (result.status == Status::ok) continue;
-      all_ok = false;
-      const std::string& problem = chunk.problems[k].empty() ? result.message : chunk.problems[k];
-      print_error(fmt::format("{} line {}: {}", file.name(), chunk.lines[k], problem));
+      const std::string& problem = chunk.problems[k];
+      lines += path_csv(result, problem, request.columns) + "\n";
+      if (result.status != Status::ok) errors.tell(chunk.lines[k], problem.empty() ? result.message : problem);
     }
     output->write(lines);
     done += static_cast<Index>(results.size());
@@ -108,7 +108,7 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
     size = std::clamp(static_cast<Index>(fitting), Index{8}, std::min(kLargestChunk, 2 * size));
   }
   output->finish();
-  return all_ok ? kDone : kSomeLinesFailed;
+  return ok_before && !errors.any() ? kDone : kSomeLinesFailed;
 }
 
 }  // namespace taut::app

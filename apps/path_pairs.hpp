@@ -4,6 +4,7 @@
 #include <string>
 
 #include "exit_code.hpp"
+#include "report.hpp"
 #include "taut/core/context.hpp"
 #include "taut/query/path.hpp"
 
@@ -14,6 +15,8 @@ struct PairsRequest {
   std::optional<std::string> out;  ///< .csv; stdout if there is none
   std::string surface;             ///< all that says which surface it is, on one line
   PathOptions options;
+  BatchColumns columns;
+  bool header = false;  ///< a first line with the columns' names
 };
 
 /// Answers line k of the file in line k of the output, `length,error,converged,locally_shortest,status`, on all cores;

@@ -5,7 +5,10 @@
 #include <iostream>
 #include <limits>
 
+#include "batch_errors.hpp"
+#include "input_files.hpp"
 #include "number_rows.hpp"
+#include "path_lines.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/io/csv_rows.hpp"
@@ -20,7 +23,7 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
   for (Index s = 0; s < num_sources; ++s) {
     sources.col(s) = parse_point(request.from[static_cast<std::size_t>(s)], "--from", surface);
   }
-  CsvRows rows(request.to_file);
+  CsvRows rows = open_rows(request.to_file);
   const NumberRows targets = read_number_rows(rows, surface.dim(), std::numeric_limits<Index>::max(),
                                               fmt::format("a point takes {}", surface.dim()));
   PathSolver solver(surface, request.options, context);
@@ -29,25 +32,31 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
   clear_progress();
   const double total = timer.seconds();
 
-  bool all_ok = true;
+  bool some_failed = false;
   std::size_t num_paths = 0;
   std::vector<SourcePaths> drawn;
   auto json = nlohmann::ordered_json::array();
-  std::string csv;
+  std::string csv = request.header ? path_csv_header(request.columns) + "\n" : "";
+  const std::string file = request.to_file == "-" ? "standard input" : request.to_file;
   for (std::size_t s = 0; s < results.size(); ++s) {
     drawn.push_back({"from " + request.from[s], {}});
+    BatchErrors errors(results.size() > 1 ? fmt::format("--from {}, {}", request.from[s], file) : file);
     for (std::size_t k = 0; k < results[s].size(); ++k, ++num_paths) {
       const PathResult& result = results[s][k];
-      if (result.status != Status::ok) {
-        all_ok = false;
-        const std::string& problem = targets.problems[k].empty() ? result.message : targets.problems[k];
-        const std::string source = results.size() > 1 ? fmt::format("--from {}, ", request.from[s]) : "";
-        print_error(fmt::format("{}{} line {}: {}", source, request.to_file, targets.lines[k], problem));
-      }
+      const std::string& problem = targets.problems[k];
+      if (result.status != Status::ok) errors.tell(targets.lines[k], problem.empty() ? result.message : problem);
       if (result.points.cols() > 0) drawn.back().paths.push_back(&result);
       json.push_back(path_json(surface, result, request.options, request.surface_seconds, total));
-      csv += path_csv(result) + "\n";
+      if (!problem.empty()) {
+        json.back()["status"] = kBadInputStatus;
+        json.back()["message"] = problem;
+      }
+      if (request.samples_along > 0) {
+        json.back()["points"] = points_json(path_points(surface, result, request.samples_along));
+      }
+      csv += path_csv(result, problem, request.columns) + "\n";
     }
+    some_failed = some_failed || errors.any();
   }
   if (delivery.json) {
     std::cout << json.dump() << "\n";
@@ -65,10 +74,11 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
                                     {"time", fmt::format("{:.3g} s", total)}},
                           .title = picture_title(request.surface),
                           .show = request.show,
-                          .field = field_options(request.options)};
+                          .field = field_options(request.options),
+                          .evenly_spaced = request.samples_along};
   write_paths(delivery.files, output, context);
   write_json_files(delivery.files, json);
-  return all_ok ? kDone : kSomeLinesFailed;
+  return some_failed ? kSomeLinesFailed : kDone;
 }
 
 }  // namespace taut::app

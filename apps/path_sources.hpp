@@ -5,6 +5,7 @@
 
 #include "deliver_path.hpp"
 #include "exit_code.hpp"
+#include "report.hpp"
 #include "taut/core/context.hpp"
 #include "taut/query/path.hpp"
 #include "timer.hpp"
@@ -19,6 +20,9 @@ struct SourcesRequest {
   std::string surface;  ///< as typed, for the title
   PathShow show;
   double surface_seconds = 0;
+  BatchColumns columns;
+  bool header = false;      ///< a first line with the columns' names
+  Index samples_along = 0;  ///< so many points a path, evenly spaced; 0 = the path's own
 };
 
 /// Answers `length,error,converged,locally_shortest,status` a line, or with --json an array of paths: all destinations

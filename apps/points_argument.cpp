@@ -57,6 +57,12 @@ Vector parse_point(const std::string& text, const char* option, const Surface& s
     return surface.samples()->points.col(index);
   }
   const Vector point = parse_numbers(text, option);
+  if (point.size() > surface.dim() && surface.kind() == "formula") {
+    throw InvalidArgument(
+        fmt::format("{} {}: has {} coordinates, but the formula uses only {} variables; --dim {} puts "
+                    "it into {} dimensions",
+                    option, text, point.size(), surface.dim(), point.size(), point.size()));
+  }
   if (point.size() != surface.dim()) {
     throw InvalidArgument(fmt::format("{} {}: has {} coordinates, the surface lies in {} dimensions", option, text,
                                       point.size(), surface.dim()));

@@ -1,5 +1,7 @@
 #include "report.hpp"
 
+#include "exit_code.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,12 +23,6 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
 
-Json points_json(const PointsIn& points) {
-  Json list = Json::array();
-  for (Index j = 0; j < points.cols(); ++j) list.push_back(vector_json(points.col(j)));
-  return list;
-}
-
 bool has_path(const PathResult& result) { return result.points.cols() > 0; }
 
 std::string duration(double seconds) {
@@ -40,6 +36,12 @@ std::string length_text(const PathResult& result) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json points_json(const PointsIn& points) {
+  Json list = Json::array();
+  for (Index j = 0; j < points.cols(); ++j) list.push_back(vector_json(points.col(j)));
+  return list;
+}
 
 std::string grouped(Index n) {
   std::string text = std::to_string(n);
@@ -205,12 +207,29 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
   if (summary.num_layers > 0)
     json["envelope"] = {{"layers", summary.num_layers}, {"cells", summary.num_envelope_cells}};
   json["components"] = summary.components;
+  if (summary.shape) {
+    json["area"] = number(summary.shape->area);
+    json["euler"] = summary.shape->euler;
+    json["closed"] = summary.shape->closed;
+    json["cut_by_box"] = summary.shape->cut_by_box;
+  }
   json["samples"] = summary.num_samples;
   if (summary.num_samples > 0) {
     json["sample_residual"] = {{"rms", number(summary.sample_rms)}, {"max", number(summary.sample_max)}};
   }
   return json;
 }
+
+namespace {
+
+std::string shape_text(const SurfaceShape& shape) {
+  return fmt::format("area {:.4g}, Euler number {}, {}", shape.area, shape.euler,
+                     shape.closed       ? "closed"
+                     : shape.cut_by_box ? "open where the box cuts it: the surface goes on beyond"
+                                        : "open");
+}
+
+}  // namespace
 
 std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
   const auto corner = [](const Vector& x) { return fmt::format("({:.4g})", fmt::join(x, ", ")); };
@@ -234,6 +253,7 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
           shown < summary.components.size() ? ", ..." : "");
     }
     facts.push_back({"components", components});
+    if (summary.shape) facts.push_back({"shape", shape_text(*summary.shape)});
   } else {
     facts.push_back({"cells", "none: there would be too many in more than 6 dimensions"});
   }
@@ -245,11 +265,20 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
   return facts;
 }
 
-std::string path_csv(const PathResult& result) {
-  if (!has_path(result)) return fmt::format("nan,inf,0,0,{}", to_string(result.status));
-  return fmt::format("{},{},{:d},{:d},{}", result.length, result.length_error,
-                     result.corrected && result.status == Status::ok, result.locally_shortest,
-                     to_string(result.status));
+std::string path_csv_header(const BatchColumns& columns) {
+  return std::string("length,error,converged,locally_shortest,status") + (columns.unique ? ",unique" : "");
+}
+
+std::string path_csv(const PathResult& result, const std::string& problem, const BatchColumns& columns) {
+  const std::string_view status = problem.empty() ? to_string(result.status) : kBadInputStatus;
+  const bool answered = problem.empty() && has_path(result);
+  std::string line = answered
+                         ? fmt::format("{},{},{:d},{:d},{}", result.length, result.length_error,
+                                       result.corrected && result.status == Status::ok, result.locally_shortest, status)
+                         : fmt::format("nan,inf,0,0,{}", status);
+  if (!columns.unique) return line;
+  const bool known = answered && (result.rivals_sought || !result.unique);
+  return line + (known ? fmt::format(",{:d}", result.unique) : ",");
 }
 
 }  // namespace taut::app

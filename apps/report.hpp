@@ -15,6 +15,9 @@ namespace taut::app {
                                                const PathOptions& options, double surface_seconds,
                                                double total_seconds);
 
+/// [[x, y, ...], ...], a point a list.
+[[nodiscard]] nlohmann::ordered_json points_json(const PointsIn& points);
+
 /// The same for a person: a few lines, each a name and a value.
 [[nodiscard]] std::vector<SceneFact> path_facts(const Surface& surface, const PathResult& result,
                                                 const PathOptions& options, double surface_seconds,
@@ -32,8 +35,16 @@ void add_picture_seconds(double seconds, nlohmann::ordered_json& json, std::vect
 /// 12345 -> "12,345"
 [[nodiscard]] std::string grouped(Index n);
 
-/// "length,error,converged,locally_shortest,status" of one path, without a newline.
-[[nodiscard]] std::string path_csv(const PathResult& result);
+/// What the lines of a batch hold.
+struct BatchColumns {
+  bool unique = false;  ///< one more: 1, 0, or nothing where no other way was looked for
+};
+
+/// "length,error,converged,locally_shortest,status", with ",unique" if asked for: the columns' names.
+[[nodiscard]] std::string path_csv_header(const BatchColumns& columns);
+
+/// The line of one path, without a newline. A line of the input that has a `problem` gets the status bad_input.
+[[nodiscard]] std::string path_csv(const PathResult& result, const std::string& problem, const BatchColumns& columns);
 
 /// "12,345 of size 0.1", and the layers of an envelope, if any.
 [[nodiscard]] std::string cells_text(Index num_cells, double cell, Index num_layers);

@@ -28,14 +28,16 @@ struct ProgramResult {
   std::string err;
 };
 
-/// The taut program at work. Its stdout goes to a file, or to `device` if given, which is not read back.
+/// The taut program at work. Its stdout goes to a file, or to `device` if given, which is not read back; its stdin is
+/// the file `input`.
 class RunningProgram {
  public:
-  explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& device = "")
+  explicit RunningProgram(const std::vector<std::string>& arguments, const std::string& device = "",
+                          const std::string& input = "/dev/null")
       : device_(device), out_((folder_.path() / "out").string()), err_((folder_.path() / "err").string()) {
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, input.c_str(), O_RDONLY, 0);
     posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, (device.empty() ? out_ : device).c_str(),
                                      O_WRONLY | O_CREAT, 0600);
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err_.c_str(), O_WRONLY | O_CREAT, 0600);
@@ -98,8 +100,9 @@ class RunningProgram {
 };
 
 /// Runs the taut program with these arguments and waits for it, a minute at most.
-inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "") {
-  return RunningProgram(arguments, device).wait(std::chrono::seconds(60));
+inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "",
+                              const std::string& input = "/dev/null") {
+  return RunningProgram(arguments, device, input).wait(std::chrono::seconds(60));
 }
 
 }  // namespace taut::test

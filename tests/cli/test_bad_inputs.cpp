@@ -147,7 +147,7 @@ std::vector<BadInput> bad_inputs() {
       {"points of another dimension",
        {"field", sphere, "--from", "1,0,0", "--at", "{}/four.csv"},
        kBadInput,
-       "have 4 coordinates where 3 are needed"},
+       "has 4 columns where 3 coordinates are needed"},
       {"folder of the result missing",
        with({"path", sphere, "--from", "1,0,0", "--to", "0,1,0"}, {"--out", "{}/none/path.json"}), kBadInput, "folder"},
       {"folder as the result", with({"path", sphere, "--from", "1,0,0", "--to", "0,1,0"}, {"--out", "{}/folder.ply"}),
@@ -156,7 +156,11 @@ std::vector<BadInput> bad_inputs() {
 
       // Formulas
       {"unknown function", path("foo(x)+y^2+z^2=1", "1,0,0", "0,1,0"), kBadInput, "foo"},
-      {"unknown parameter", path("x^2+y^2+z^2=R", "1,0,0", "0,1,0"), kBadInput, "R"},
+      {"unknown parameter", path("x^2+y^2+z^2=R^2", "1,0,0", "0,1,0"), kBadInput, "--set R=1"},
+      {"value forgotten", path("x^2+y^2+4z^2", "1,0,0", "0,0,0.5"), kBadInput, "has no '='"},
+      {"inequality among the equations", path("x^2+y^2+z^2=1; z>0", "1,0,0", "0,1,0"), kBadInput, "--domain 'z>0'"},
+      {"formula file missing", path("@{}/none.txt", "1,0,0", "0,1,0"), kBadInput, "none.txt: no such file"},
+      {"formula file empty", path("@{}/empty.csv", "1,0,0", "0,1,0"), kBadInput, "holds no formula"},
       {"open parenthesis", path("(x^2+y^2+z^2=1", "1,0,0", "0,1,0"), kBadInput, "never closed"},
       {"operand missing", path("x^2+*y^2=1", "1,0,0", "0,1,0"), kBadInput, "*"},
       {"empty formula", path("", "1,0,0", "0,1,0"), kBadInput, "empty"},
@@ -171,6 +175,7 @@ std::vector<BadInput> bad_inputs() {
 
       // Points
       {"two coordinates", path(sphere, "1,0", "0,1,0"), kBadInput, "--from 1,0: has 2 coordinates"},
+      {"point of space on a curve", path("x^2+y^2=1", "1,0,0", "0,1,0"), kBadInput, "--dim 3"},
       {"nan point", path(sphere, "nan,0,0", "0,1,0"), kBadInput, "finite"},
       {"infinite point", path(sphere, "1,0,0", "0,inf,0"), kBadInput, "finite"},
       {"sample of a formula", path(sphere, "@5", "0,1,0"), kBadInput, "no samples"},
@@ -192,6 +197,26 @@ std::vector<BadInput> bad_inputs() {
       {"unknown command", {"fly", sphere}, kWrongUsage, "there is no command 'fly'"},
       {"no surface", {"path"}, kWrongUsage, "SURFACE"},
       {"unknown option", with(good, {"--sideways"}), kWrongUsage, "there is no option --sideways"},
+      {"mistyped option", with(good, {"--formm", "1,0,0"}), kWrongUsage, "did you mean --from?"},
+      {"longer option", with(good, {"--output", "a.csv"}), kWrongUsage, "did you mean --out?"},
+      {"mistyped command", {"paht", sphere}, kWrongUsage, "did you mean path?"},
+      {"option twice", with(good, {"--to", "1,0,0"}), kWrongUsage, "--to is given more than once"},
+      {"option without a value", with(good, {"--dim"}), kWrongUsage, "--dim needs a value"},
+      {"point in three words", {"path", sphere, "--from", "1", "0", "0"}, kWrongUsage, "'0' stands alone"},
+      {"formula in three words", {"path", "x^2", "+", "y^2"}, kWrongUsage, "into quotes"},
+      {"surface from a pipe", {"info", "-"}, kWrongUsage, "standard input"},
+      {"parameter that is not used", with(good, {"--set", "S=2"}), kWrongUsage, "the formula has no S"},
+      {"smoothing of a formula", with(good, {"--smooth", "2"}), kWrongUsage, "--smooth is for point files"},
+      {"variables of a file", with(path("{}/sphere.xyz"), {"--vars", "a,b"}), kWrongUsage, "--vars is for formulas"},
+      {"results over their pairs",
+       {"path", sphere, "--pairs", "{}/four.csv", "--out", "{}/four.csv"},
+       kWrongUsage,
+       "is read as input"},
+      {"header of one path", with(good, {"--header"}), kWrongUsage, "--header"},
+      {"tolerance of a marched field",
+       {"field", sphere, "--from", "1,0,0", "--tol", "1e-6", "--out", "{}/result/f.ply"},
+       kWrongUsage,
+       "--tol"},
       {"half a thread", with(good, {"--threads", "2.5"}), kWrongUsage, "'2.5' is not a whole number"},
       {"pairs as JSON", {"path", sphere, "--pairs", "{}/four.csv", "--json"}, kWrongUsage, "--json"},
       {"pairs with an end", {"path", sphere, "--pairs", "{}/four.csv", "--to", "1,0,0"}, kWrongUsage, "--pairs"},
@@ -297,6 +322,7 @@ TEST(BadInputs, BadLinesOfABatchAreAnsweredInPlace) {
     EXPECT_TRUE(answers[good].ends_with(",1,1,ok")) << answers[good];
   }
   for (std::size_t bad = 1; bad < 6; ++bad) EXPECT_TRUE(answers[bad].starts_with("nan,inf,0,0,")) << answers[bad];
+  for (std::size_t bad = 1; bad < 4; ++bad) EXPECT_EQ(answers[bad], "nan,inf,0,0,bad_input");
   const std::vector<std::string> reasons = lines_of(result.err);
   ASSERT_EQ(reasons.size(), 5U) << result.err;
   for (std::size_t i = 0; i < 5; ++i) {

@@ -1,0 +1,31 @@
+#include "input_files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <system_error>
+
+#include "points_argument.hpp"
+
+namespace taut::app {
+
+std::string file_or_stdin(const std::string& name) { return name == "-" ? "/dev/stdin" : name; }
+
+CsvRows open_rows(const std::string& name) {
+  return name == "-" ? CsvRows(file_or_stdin(name), "standard input") : CsvRows(name);
+}
+
+void refuse_to_overwrite(const std::vector<std::string>& inputs, const std::vector<std::string>& results) {
+  for (const std::string& result : results) {
+    for (const std::string& input : inputs) {
+      std::error_code ignored;
+      if (input.empty() || !std::filesystem::is_regular_file(input, ignored) ||
+          !std::filesystem::equivalent(input, result, ignored)) {
+        continue;
+      }
+      throw UsageError(fmt::format("--out {}: is read as input; write to another file", result));
+    }
+  }
+}
+
+}  // namespace taut::app

@@ -1,0 +1,37 @@
+#include "path_lines.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "taut/curve/evenly_spaced.hpp"
+
+namespace taut::app {
+
+Points path_points(const Surface& surface, const PathResult& path, Index evenly_spaced) {
+  return evenly_spaced > 0 && path.points.cols() > 1 ? taut::evenly_spaced(surface, path.points, evenly_spaced)
+                                                     : path.points;
+}
+
+PathLines path_lines(const Surface& surface, const std::vector<const PathResult*>& paths, Index evenly_spaced) {
+  PathLines result;
+  for (const PathResult* path : paths) result.lines.lines.push_back(path_points(surface, *path, evenly_spaced));
+  const Index n = result.lines.num_points();
+  VertexScalar arc_length{.name = "arc_length", .values = Vector(n)};
+  const bool hypersurface = surface.codim() == 1;
+  result.normals.resize(surface.dim(), hypersurface ? n : 0);
+  Index next = 0;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const Points& line = result.lines.lines[i];
+    Vector along = arc_lengths(line);
+    // What is left between the two lengths is the spacing's: the path's own length is the accurate one.
+    const bool known = along.size() > 0 && along(along.size() - 1) > 0 && std::isfinite(paths[i]->length);
+    if (known) along *= paths[i]->length / along(along.size() - 1);
+    arc_length.values.segment(next, line.cols()) = along;
+    if (hypersurface) result.normals.middleCols(next, line.cols()) = surface.jacobian(line).colwise().normalized();
+    next += line.cols();
+  }
+  result.lines.scalars.push_back(std::move(arc_length));
+  return result;
+}
+
+}  // namespace taut::app
