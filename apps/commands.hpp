@@ -25,5 +25,6 @@ Run add_exp_command(CLI::App& app);
 Run add_fit_command(CLI::App& app);
 Run add_mesh_command(CLI::App& app);
 Run add_info_command(CLI::App& app);
+Run add_paper_command(CLI::App& app);
 
 }  // namespace taut::app

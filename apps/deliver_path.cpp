@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 
+#include "ignored_faces.hpp"
 #include "report.hpp"
 #include "terminal.hpp"
 #include "timer.hpp"
@@ -43,6 +44,7 @@ ExitCode deliver_path(const DeliveryArguments& arguments, const PathOutput& outp
     print_error(path.message);
     return exit_code(path.status);
   }
+  tell_of_ignored_faces(output.surface, path.length, context);
   if (trouble) std::rethrow_exception(trouble);
   write_json_files(arguments.files, json);
   if (path.status != Status::ok) print_error(fmt::format("{}: {}", to_string(path.status), path.message));

@@ -3,13 +3,21 @@
 #include <cmath>
 #include <utility>
 
+#include "report.hpp"
 #include "taut/curve/evenly_spaced.hpp"
 
 namespace taut::app {
+namespace {
 
 Points path_points(const Surface& surface, const PathResult& path, Index evenly_spaced) {
   return evenly_spaced > 0 && path.points.cols() > 1 ? taut::evenly_spaced(surface, path.points, evenly_spaced)
                                                      : path.points;
+}
+
+}  // namespace
+
+void space_points(const Surface& surface, const PathResult& path, Index evenly_spaced, nlohmann::ordered_json& json) {
+  if (evenly_spaced > 0) json["points"] = points_json(path_points(surface, path, evenly_spaced));
 }
 
 PathLines path_lines(const Surface& surface, const std::vector<const PathResult*>& paths, Index evenly_spaced) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "taut/core/mesh.hpp"
@@ -17,7 +18,7 @@ struct PathLines {
 [[nodiscard]] PathLines path_lines(const Surface& surface, const std::vector<const PathResult*>& paths,
                                    Index evenly_spaced);
 
-/// The points of one path, likewise.
-[[nodiscard]] Points path_points(const Surface& surface, const PathResult& path, Index evenly_spaced);
+/// Puts the points of one path, likewise, into its JSON.
+void space_points(const Surface& surface, const PathResult& path, Index evenly_spaced, nlohmann::ordered_json& json);
 
 }  // namespace taut::app

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <limits>
 
 #include "batch_errors.hpp"
+#include "ignored_faces.hpp"
 #include "input_files.hpp"
 #include "number_rows.hpp"
 #include "path_lines.hpp"
@@ -32,37 +34,38 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
   clear_progress();
   const double total = timer.seconds();
 
-  bool some_failed = false;
+  BatchErrors errors(request.to_file == "-" ? "standard input" : request.to_file);
   std::size_t num_paths = 0;
+  double shortest = std::numeric_limits<double>::infinity();
   std::vector<SourcePaths> drawn;
   auto json = nlohmann::ordered_json::array();
   std::string csv = request.header ? path_csv_header(request.columns) + "\n" : "";
-  const std::string file = request.to_file == "-" ? "standard input" : request.to_file;
   for (std::size_t s = 0; s < results.size(); ++s) {
     drawn.push_back({"from " + request.from[s], {}});
-    BatchErrors errors(results.size() > 1 ? fmt::format("--from {}, {}", request.from[s], file) : file);
     for (std::size_t k = 0; k < results[s].size(); ++k, ++num_paths) {
       const PathResult& result = results[s][k];
       const std::string& problem = targets.problems[k];
-      if (result.status != Status::ok) errors.tell(targets.lines[k], problem.empty() ? result.message : problem);
+      if (result.status != Status::ok) {
+        const std::string source = results.size() > 1 ? fmt::format("from {}: ", request.from[s]) : "";
+        errors.tell(targets.lines[k], source + (problem.empty() ? result.message : problem));
+      }
+      if (result.length > 0) shortest = std::min(shortest, result.length);
       if (result.points.cols() > 0) drawn.back().paths.push_back(&result);
       json.push_back(path_json(surface, result, request.options, request.surface_seconds, total));
+      space_points(surface, result, request.samples_along, json.back());
       if (!problem.empty()) {
         json.back()["status"] = kBadInputStatus;
         json.back()["message"] = problem;
       }
-      if (request.samples_along > 0) {
-        json.back()["points"] = points_json(path_points(surface, result, request.samples_along));
-      }
       csv += path_csv(result, problem, request.columns) + "\n";
     }
-    some_failed = some_failed || errors.any();
   }
   if (delivery.json) {
     std::cout << json.dump() << "\n";
   } else {
     std::cout << csv;
   }
+  tell_of_ignored_faces(surface, shortest, context);
   if (results.size() > 1)
     context.tell(fmt::format("{} paths from {} sources in {:.3g} s", num_paths, results.size(), total));
 
@@ -78,7 +81,7 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
                           .evenly_spaced = request.samples_along};
   write_paths(delivery.files, output, context);
   write_json_files(delivery.files, json);
-  return some_failed ? kSomeLinesFailed : kDone;
+  return errors.any() ? kSomeLinesFailed : kDone;
 }
 
 }  // namespace taut::app

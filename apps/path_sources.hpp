@@ -19,6 +19,9 @@ struct SourcesRequest {
   PathOptions options;
   std::string surface;  ///< as typed, for the title
   PathShow show;
+  BatchColumns columns;
+  bool header = false;      ///< the columns' names first
+  Index samples_along = 0;  ///< points a path at equal arc lengths; 0 = its own
   double surface_seconds = 0;
   BatchColumns columns;
   bool header = false;      ///< a first line with the columns' names

@@ -30,16 +30,15 @@ using detail::StripStepper;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Strips round a source at first. On the unit sphere kRays rays know an eighth of a turn to 1e-14 at length 0.5.
+/// Strips round a source at first. A quarter turn is known to 1e-12 on kRays rays.
 constexpr int kStartStrips = 8;
 /// Part of the tolerance that a panel's series may leave out. Errors of neighbouring panels do not add up (each
 /// begins with true rays), those of a row of splits do.
 constexpr double kShare = 0.1;
 /// Steps shorter than this part of max_panel are not tried: a crease, a singular point.
 constexpr double kLeastStep = 1e-5;
-/// Attempts for one strip in one round, all that it is split into together. An ellipsoid 1:1:0.02 from half way to its
-/// rim breaks off with panels of 0.25 and goes on with panels of 0.06; a seam across which curvature jumps would take
-/// millions.
+/// Attempts for one strip in one round, all that it is split into together. The rim of an ellipsoid 1:1:0.02 takes some
+/// hundred; a seam across which curvature jumps would take millions.
 constexpr int kMostAttempts = 4000;
 
 /// What became of one strip in one round.

@@ -8,8 +8,8 @@ namespace taut::detail {
 /// rays Gauss collocation with kStages nodes, whose positions are polynomials of degree kStages + 1. Computed once, in
 /// extended precision. tau = 0 .. 1 along a step, xi = 2 tau - 1; alpha = -1 .. 1 across the rays.
 struct PanelBasis {
-  /// With 12 x 10, panels of the unit sphere at 1e-9 are as long as max_panel lets them (0.5), and solving for a target
-  /// takes 1 to 3 us.
+  /// Even, so that the middle of a panel is no node. Between 8 and 14 what a field costs varies by a quarter; at 12 x
+  /// 10 it is least on the sphere, the torus and the tangle cube together (docs/measured/field.md).
   static constexpr int kRays = 12;
   static constexpr int kStages = 10;
   static constexpr int kSeries = kStages + 2;  ///< Chebyshev coefficients of a position along a step

@@ -52,7 +52,7 @@ struct DistanceSolver::Impl {
   std::optional<PathSolver> paths;
 
   Impl(Surface s, const DistanceOptions& o, Context c)
-      : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, o.grid, o.cell, context) {}
+      : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, {o.grid, o.cell, o.seeds}, context) {}
 
   /// A fan follows rays on surfaces in R^3 that have no border.
   [[nodiscard]] bool has_fan() const {
@@ -61,7 +61,7 @@ struct DistanceSolver::Impl {
 
   void make_fan() {
     if (!has_fan() || fan) return;
-    if (!levels.lazy()) (void)levels.cells(0, sources);  // finds the size that follows the surface's bends
+    (void)levels.cells(0, sources);  // finds the size that follows the surface's bends
     fan.emplace(surface, sources, values,
                 FanOptions{.tolerance = options.tolerance,
                            .max_panel = kPanelCells * levels.size(0),
@@ -139,7 +139,7 @@ struct DistanceSolver::Impl {
 
   /// A target lies on a component of the complete cells on which no source lies: a proof that no path leads there.
   void drop_disconnected(const Points& x, std::vector<Index>& open, Distances& result) {
-    if (!fan || levels.lazy() || std::isfinite(fan->reach())) return;
+    if (!fan || std::isfinite(fan->reach())) return;
     const std::shared_ptr<SurfaceCells> cells = levels.cells(0, sources);
     const std::shared_ptr<const std::vector<std::int32_t>> label = levels.components(0);
     const auto component = [&](const VectorIn& p) {
@@ -172,11 +172,13 @@ struct DistanceSolver::Impl {
     }
     if (open.empty()) return;
     if (!paths) {
-      paths.emplace(
-          surface,
-          PathOptions{
-              .march = options.march, .grid = options.grid, .cell = options.cell, .tolerance = options.tolerance},
-          context);
+      paths.emplace(surface,
+                    PathOptions{.march = options.march,
+                                .grid = options.grid,
+                                .cell = options.cell,
+                                .seeds = options.seeds,
+                                .tolerance = options.tolerance},
+                    context);
     }
     Points targets(x.rows(), static_cast<Index>(open.size()));
     for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);

@@ -200,7 +200,7 @@ std::vector<BadInput> bad_inputs() {
       {"mistyped option", with(good, {"--formm", "1,0,0"}), kWrongUsage, "did you mean --from?"},
       {"longer option", with(good, {"--output", "a.csv"}), kWrongUsage, "did you mean --out?"},
       {"mistyped command", {"paht", sphere}, kWrongUsage, "did you mean path?"},
-      {"option twice", with(good, {"--to", "1,0,0"}), kWrongUsage, "--to is given more than once"},
+      {"option twice", with(good, {"--from", "1,0,0"}), kWrongUsage, "--from is given more than once"},
       {"option without a value", with(good, {"--dim"}), kWrongUsage, "--dim needs a value"},
       {"point in three words", {"path", sphere, "--from", "1", "0", "0"}, kWrongUsage, "'0' stands alone"},
       {"formula in three words", {"path", "x^2", "+", "y^2"}, kWrongUsage, "into quotes"},

@@ -21,6 +21,7 @@ struct DistanceOptions {
   double max_distance = std::numeric_limits<double>::infinity();
   GridMethod grid = GridMethod::automatic;
   double cell = 0;                              ///< grid cell size h, model units; 0 = chosen
+  Points seeds = {};                            ///< as PathOptions::seeds
   MarchMethod march = MarchMethod::convergent;  ///< how starts of corrected paths are found
   /// Panels that a geodesic fan may have; see FanOptions.
   Index max_patches = 60000;

@@ -77,15 +77,15 @@ class BlendedFunction : public FittedFunction {
   [[nodiscard]] Jet jet(const double* x) const { return blend<true>(x); }
 
   /// F over the box, in at most `halvings` steps of halving it.
-  [[nodiscard]] Range range(const MiddleBox<D>& box, int halvings, RangeScratch& scratch) const;
+  [[nodiscard]] PatchRange range(const MiddleBox<D>& box, int halvings, RangeScratch& scratch) const;
 
  private:
   template <bool Derivatives>
   [[nodiscard]] Jet blend(const double* x) const;
   [[nodiscard]] Jet plane_of_nearest(const double* x) const;
   /// None where too many patches meet the box; `nearest`: distance of its middle to a centre.
-  [[nodiscard]] std::optional<Range> range_at_once(const MiddleBox<D>& box, double nearest,
-                                                   RangeScratch& scratch) const;
+  [[nodiscard]] std::optional<PatchRange> range_at_once(const MiddleBox<D>& box, double nearest,
+                                                        RangeScratch& scratch) const;
 
   std::vector<Patch<D>> patches_;
   Points centres_;
@@ -181,32 +181,32 @@ auto BlendedFunction<D>::plane_of_nearest(const double* x) const -> Jet {
 // where the box may leave the union of balls. A box that many patches meet is halved in each direction first, unless
 // one part shows that F may vanish in it. Far from all balls nothing is said: there the domain has ended.
 template <int D>
-Range BlendedFunction<D>::range(const MiddleBox<D>& box, int halvings, RangeScratch& scratch) const {
-  if (!(box.half_diagonal < kInfinity)) return Range::unknown();
+PatchRange BlendedFunction<D>::range(const MiddleBox<D>& box, int halvings, RangeScratch& scratch) const {
+  if (!(box.half_diagonal < kInfinity)) return PatchRange::unknown();
   const double nearest = std::sqrt(nearest_.nearest(box.middle.data()).squared_distance);
-  if (!(nearest - box.half_diagonal <= kFarRadii * largest_radius_)) return Range::unknown();
-  if (const std::optional<Range> range = range_at_once(box, nearest, scratch)) return *range;
-  if (halvings == 0) return Range::unknown();
-  Range hull;
+  if (!(nearest - box.half_diagonal <= kFarRadii * largest_radius_)) return PatchRange::unknown();
+  if (const std::optional<PatchRange> range = range_at_once(box, nearest, scratch)) return *range;
+  if (halvings == 0) return PatchRange::unknown();
+  PatchRange hull;
   for (std::size_t part = 0; part < std::size_t{1} << kDim && !hull.has_zero(); ++part) {
     Coordinates lower = box.lower;
     Coordinates upper = box.upper;
     for (std::size_t a = 0; a < kDim; ++a) ((part >> a & 1U) != 0 ? lower : upper)[a] = box.middle[a];
-    const Range of_part = range(MiddleBox<D>(lower.data(), upper.data()), halvings - 1, scratch);
+    const PatchRange of_part = range(MiddleBox<D>(lower.data(), upper.data()), halvings - 1, scratch);
     hull.include(of_part.lower, of_part.upper);
   }
-  return hull.has_zero() ? Range::unknown() : hull;
+  return hull.has_zero() ? PatchRange::unknown() : hull;
 }
 
 template <int D>
-std::optional<Range> BlendedFunction<D>::range_at_once(const MiddleBox<D>& box, double nearest,
-                                                       RangeScratch& scratch) const {
+std::optional<PatchRange> BlendedFunction<D>::range_at_once(const MiddleBox<D>& box, double nearest,
+                                                            RangeScratch& scratch) const {
   std::vector<std::uint32_t>& patches = scratch.patches;
   patches.clear();
   if (!tree_.within(box.lower.data(), box.upper.data(), kMostPatches, patches)) return std::nullopt;
   std::sort(patches.begin(), patches.end());
   patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-  Range range;
+  PatchRange range;
   bool inside = false;
   for (const std::uint32_t i : patches) {
     inside = include_patch(patches_[i], box, kSurelyInside, range) == BallMeets::whole || inside;
@@ -245,7 +245,7 @@ class BlendedEvaluator : public Evaluator {
 
   bool bounds(const BoxBatch& batch) override {
     for (Index j = 0; j < batch.n; ++j) {
-      const Range range =
+      const PatchRange range =
           function_.range(MiddleBox<D>(batch.lower + j * D, batch.upper + j * D), kMostHalvings, scratch_);
       batch.value_lower[j] = range.lower;
       batch.value_upper[j] = range.upper;

@@ -10,7 +10,7 @@
 namespace taut::detail {
 
 /// An interval, outward-rounded by whoever fills it.
-struct Range {
+struct PatchRange {
   double lower = std::numeric_limits<double>::infinity();
   double upper = -std::numeric_limits<double>::infinity();
 
@@ -19,7 +19,9 @@ struct Range {
     upper = std::max(upper, to);
   }
   [[nodiscard]] bool has_zero() const { return lower <= 0 && upper >= 0; }
-  static Range unknown() { return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}; }
+  static PatchRange unknown() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
 };
 
 /// A closed box by its middle and half its edges.
@@ -50,7 +52,7 @@ enum class BallMeets { nothing, part, whole };
 /// middle of that part, which is exact for a cubic. Says how much of the box the ball holds: the whole if no point of
 /// it is farther from the centre than the part `sure` of the radius.
 template <int D>
-BallMeets include_patch(const Patch<D>& patch, const MiddleBox<D>& box, double sure, Range& range) {
+BallMeets include_patch(const Patch<D>& patch, const MiddleBox<D>& box, double sure, PatchRange& range) {
   constexpr double kEps = std::numeric_limits<double>::epsilon();
   const double per_radius = 1 / patch.radius;
   double least = 0;  // squared distances of the box to the centre, in radii
@@ -86,7 +88,7 @@ BallMeets include_patch(const Patch<D>& patch, const MiddleBox<D>& box, double s
 
 /// Adds to `range` what the plane through a patch's centre does on the box.
 template <int D>
-void include_plane(const Patch<D>& patch, const MiddleBox<D>& box, Range& range) {
+void include_plane(const Patch<D>& patch, const MiddleBox<D>& box, PatchRange& range) {
   constexpr double kEps = std::numeric_limits<double>::epsilon();
   double value = patch.radius * patch.cubic.coefficient[0];
   double reach = 0;
