@@ -66,6 +66,8 @@ void check_flow(const Surface& surface, const FlowOptions& options, CountingEval
     result.reason = "the curve runs into a point where the surface has no normal";
   } else if (state.outcome == FlowOutcome::out_of_work) {
     result.reason = "the work allowed was used up before the curve came to rest";
+  } else if (state.outcome == FlowOutcome::torn) {
+    result.reason = "the start does not follow the surface: intervals leave it, however short";
   } else if (state.outcome != FlowOutcome::at_rest) {
     result.reason = "the geodesic curvature did not fall below its bound";
   } else if (ends > kEndOff * result.length + 16 * kEpsilon * scale) {

@@ -29,6 +29,7 @@ constexpr double kLooseBound = 1e-4;        // |k_g| length on coarse levels
 constexpr double kDefaultBound = 1e-6;      // |k_g| length at the end: 1e-13 of the length
 constexpr double kGap = 1.5;                // mean intervals of the start from which on it has a gap
 constexpr int kMostRounds = 8;              // of insertion into the first curve, before it is relaxed and after
+constexpr int kMostSpreadings = 2;          // of the nodes inserted at the end
 constexpr int kMostClosingRounds = 8;       // of insertion at the end
 constexpr double kStartTurn = 0.3;   // radians the normal may turn along an interval before the first relaxation,
 constexpr double kRoughTurn = 0.5;   // ... and after it: up to there a polyline still follows its curve
@@ -45,7 +46,8 @@ Index work_allowed(const FlowOptions& options, Index dim) {
 
 /// Nothing more is to be had of it.
 bool is_over(const FlowState& state) {
-  return state.outcome == FlowOutcome::singular || state.outcome == FlowOutcome::out_of_work;
+  return state.outcome == FlowOutcome::singular || state.outcome == FlowOutcome::out_of_work ||
+         state.outcome == FlowOutcome::torn;
 }
 
 }  // namespace
@@ -119,9 +121,14 @@ FlowState FlowCorrection::first_curve(const PointsIn& start) {
   for (int round = 0;; ++round) {
     const Vector widths = interval_lengths(points);
     FlowState state = solver_.relax({std::move(points), widths}, loose);
-    if (is_over(state) || round == kMostRounds || state.nodes.size() > kMostRoughNodes) return state;
+    if (is_over(state) || state.nodes.size() > kMostRoughNodes) return state;
     points = state.nodes.points();
-    if (insertion_.insert(points, bent_intervals(state.nodes, kRoughTurn)) == 0) return state;
+    const std::vector<bool> bent = bent_intervals(state.nodes, kRoughTurn);
+    if (std::ranges::find(bent, true) == bent.end()) return state;
+    if (insertion_.insert(points, bent) == 0 || round == kMostRounds) {
+      state.outcome = FlowOutcome::torn;
+      return state;
+    }
   }
 }
 
@@ -197,7 +204,10 @@ FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
   project_nodes(points);
   while (true) {
     const bool last = scale <= 1;
-    state = solver_.relax(with_widths(std::move(points), rule), bound(length, last));
+    // New nodes are spread along the whole curve; where that leaves gaps again and again, they stay where they are put.
+    FlowCurve curve =
+        rounds <= kMostSpreadings ? with_widths(points, rule) : FlowCurve{points, interval_lengths(points)};
+    state = solver_.relax(std::move(curve), bound(length, last));
     points = state.nodes.points();
     if (is_over(state)) break;
     const Vector lengths = interval_lengths(points);

@@ -31,6 +31,7 @@ constexpr double kRankMargin = 1e-10;
 // of s, or turns a node's normal by more than the angle of this cosine, has lost the sheet it started on.
 constexpr double kMostRise = 0.3;
 constexpr double kLeastCosine = 0.3;
+constexpr double kFarthestApart = 0.2;  // ... and the cosine between neighbours' normals, for the same reason
 
 /// Longest Newton-Raphson step of an inner node to the surface.
 double off_surface(const FlowNodes& nodes) {
@@ -196,6 +197,14 @@ bool FlowSolver::keeps_to_its_sheet(const FlowNodes& from, const FlowNodes& to) 
     const double off = to.correction().col(i).norm();
     if (!(off <= kMostRise * moved + 2 * from.correction().col(i).norm() + kNoisyOffSurface * moved)) return false;
     if (codim_ == 1 && from.normals(i).col(0).dot(to.normals(i).col(0)) < kLeastCosine) return false;
+  }
+  if (codim_ > 1) return true;
+  // Neighbours that drift apart around the surface would let the curve slip through it.
+  for (Index i = 1; i < from.size(); ++i) {
+    if (to.normals(i).col(0).dot(to.normals(i - 1).col(0)) < kFarthestApart &&
+        from.normals(i).col(0).dot(from.normals(i - 1).col(0)) >= kFarthestApart) {
+      return false;
+    }
   }
   return true;
 }

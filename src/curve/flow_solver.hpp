@@ -14,6 +14,7 @@ enum class FlowOutcome {
   standing,     ///< no step decreases the energy any more
   out_of_work,  ///< as many nodes were evaluated as may be
   singular,     ///< at a point where the Jacobian loses rank
+  torn,         ///< an interval leaves the surface, however short it is made
 };
 
 /// What the flow came to.

@@ -9,11 +9,11 @@ namespace taut::detail {
 namespace {
 
 constexpr double kExact = 1e-9;  // of the shortest gap: how near to the surface a new node is brought
-// A new node this near to one end and this far from the other (of the gap) has fallen back: it closes nothing.
-constexpr double kFallenNear = 0.25;
-constexpr double kFallenFar = 0.9;
+// A new node that lands less than this part of AB beside an end, and not between them, has fallen back on that end.
+constexpr double kBeside = 0.2;
 constexpr double kFreeReach = 1;   // of the gap: how far an ordinary projection may lead
-constexpr double kPlaneReach = 2;  // of the gap, at least: how far (5) may lead. Within a cell as far as it is wide.
+constexpr double kPlaneReach = 2;  // of the gap, at least: how far (5) may lead. Within a cell as far as it is wide,
+constexpr double kFreePlaneReach = 20;  // ... and where no cell tells how deep the groove may be, so far
 
 }  // namespace
 
@@ -56,10 +56,9 @@ Index GapInsertion::insert(Points& points, const std::vector<bool>& wide) {
   std::vector<Index> fallen;
   for (Index j = 0; j < count; ++j) {
     Gap& gap = gaps[static_cast<std::size_t>(j)];
-    const double from_a = (fresh.col(j) - points.col(gap.first)).norm();
-    const double from_b = (fresh.col(j) - points.col(gap.first + 1)).norm();
-    const bool back =
-        std::min(from_a, from_b) < kFallenNear * gap.width && std::max(from_a, from_b) > kFallenFar * gap.width;
+    const Vector edge = points.col(gap.first + 1) - points.col(gap.first);
+    const double place = edge.dot(fresh.col(j) - points.col(gap.first)) / edge.squaredNorm();  // A = 0, B = 1
+    const bool back = place < kBeside || place > 1 - kBeside;
     gap.found = found(j) && !back;
     if (!gap.found) fallen.push_back(j);
   }
@@ -74,7 +73,8 @@ Index GapInsertion::insert(Points& points, const std::vector<bool>& wide) {
       axes.col(a) = (points.col(gap.first + 1) - points.col(gap.first)) / gap.width;
       gap.across = !in_one_cell(points.col(gap.first), points.col(gap.first + 1));
       const double diagonal = lattice_.size * std::sqrt(static_cast<double>(dim_));
-      plane_reach(a) = std::max(kPlaneReach * gap.width, gap.across ? 0.0 : diagonal);
+      plane_reach(a) =
+          std::max((lattice_.size > 0 ? kPlaneReach : kFreePlaneReach) * gap.width, gap.across ? 0 : diagonal);
     }
     const auto closed = project_in_planes(evaluator_, dim_, codim_, in_plane, axes, plane_reach, tolerance);
     for (Index a = 0; a < again; ++a) {
