@@ -1,6 +1,7 @@
 #include "command_line_errors.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <string_view>
@@ -40,7 +41,8 @@ std::string explain_option(const std::string& written, const CLI::App& command) 
 }
 
 std::string explain_word(const std::string& word) {
-  const bool number = !word.empty() && word.find_first_not_of("+-.,0123456789eE") == std::string::npos;
+  const bool number = word.find_first_of("0123456789") != std::string::npos &&
+                      word.find_first_not_of("+-.,0123456789eE") == std::string::npos;
   return number ? fmt::format("'{}' stands alone; a point is one word with commas and no blanks, as in 1,0,0", word)
                 : fmt::format("'{}' is not expected here; put a formula or a name with blanks into quotes", word);
 }
@@ -52,12 +54,11 @@ std::string explain_command(const CLI::App& app, const std::vector<std::string>&
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
   if (!arguments.empty() && std::ranges::count(names, arguments.front()) > 0) return "";
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  const std::string problem = arguments.empty() ? "give a command"
-                                                : fmt::format("there is no command '{}'{}", arguments.front(),
-                                                              suggestion(arguments.front(), names));
-  return fmt::format("{}; the commands are {}", problem, list);
+  const std::string meant = arguments.empty() ? "" : suggestion(arguments.front(), names);
+  if (!meant.empty()) return fmt::format("there is no command '{}'{}", arguments.front(), meant);
+  const std::string problem =
+      arguments.empty() ? "give a command" : fmt::format("there is no command '{}'", arguments.front());
+  return fmt::format("{}; the commands are {}", problem, fmt::join(names, ", "));
 }
 
 std::string explain(const CLI::ParseError& error, const CLI::App& command) {

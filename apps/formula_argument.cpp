@@ -74,6 +74,7 @@ std::string hint_for(const ParseError& error, const std::string& text, const std
 /// A formula without "=" means "= 0". Where it takes one sign only, such as a sum of squares, that leaves no surface.
 void refuse_forgotten_value(const Surface& surface, const std::string& text) {
   constexpr double kEverywhere = 1e100;  // its fourth power is infinite, and such bounds do no harm
+  constexpr double kRounding = 1e-200;   // bounds are rounded outwards, that of a sum of squares to just below 0
   if (text.find('=') != text.npos || surface.codim() != 1) return;
   const Vector lower = Vector::Constant(surface.dim(), -kEverywhere);
   const Vector upper = -lower;
@@ -83,11 +84,11 @@ void refuse_forgotten_value(const Surface& surface, const std::string& text) {
           {.n = 1, .lower = lower.data(), .upper = upper.data(), .value_lower = &least, .value_upper = &most})) {
     return;
   }
-  if (!(least >= 0) && !(most <= 0)) return;
+  if (!(least >= -kRounding) && !(most <= kRounding)) return;
   throw InvalidArgument(
       fmt::format("the formula has no '=' and so means ... = 0, but it is nowhere {} 0: that leaves no "
                   "surface; write = and a value behind it, as in x^2+y^2+4z^2 = 1",
-                  least >= 0 ? "below" : "above"));
+                  least >= -kRounding ? "below" : "above"));
 }
 
 }  // namespace
@@ -114,6 +115,17 @@ FormulaOptions formula_options(const SurfaceArguments& arguments, const std::str
   std::istringstream names(arguments.variables);
   for (std::string name; std::getline(names, name, ',');) options.variables.push_back(name);
   return options;
+}
+
+bool holds_formula(const std::string& file) {
+  constexpr int kLinesLooked = 20;
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  for (int i = 0; i < kLinesLooked && std::getline(in, line); ++i) {
+    const bool comment = line.starts_with("#") || line.starts_with("//") || line.starts_with("%");
+    if (!comment && line.find('=') != line.npos) return true;
+  }
+  return false;
 }
 
 Surface read_formula(const SurfaceArguments& arguments) {

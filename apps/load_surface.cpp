@@ -48,6 +48,9 @@ Surface load_file(const SurfaceArguments& arguments, const Context& context) {
     refuse_options(fit_options(arguments.fit), file, "point files; {} is a clause file");
     return read_clauses(file, formula_options(arguments), context);
   }
+  if (file.ends_with(".txt") && holds_formula(file)) {
+    throw UsageError(fmt::format("{}: holds a formula and no points; write @{}", file, file));
+  }
   refuse_options({{!arguments.parameters.empty(), "--set"},
                   {!arguments.variables.empty(), "--vars"},
                   {!arguments.domain.empty(), "--domain"}},

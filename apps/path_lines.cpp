@@ -30,7 +30,8 @@ PathLines path_lines(const Surface& surface, const std::vector<const PathResult*
   Index next = 0;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     const Points& line = result.lines.lines[i];
-    Vector along = arc_lengths(line);
+    // Points that were spaced evenly lie too far apart to measure the curve between them.
+    Vector along = evenly_spaced > 0 ? Vector(Vector::LinSpaced(line.cols(), 0, 1)) : arc_lengths(line);
     // What is left between the two lengths is the spacing's: the path's own length is the accurate one.
     const bool known = along.size() > 0 && along(along.size() - 1) > 0 && std::isfinite(paths[i]->length);
     if (known) along *= paths[i]->length / along(along.size() - 1);

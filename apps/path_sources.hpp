@@ -23,9 +23,6 @@ struct SourcesRequest {
   bool header = false;      ///< the columns' names first
   Index samples_along = 0;  ///< points a path at equal arc lengths; 0 = its own
   double surface_seconds = 0;
-  BatchColumns columns;
-  bool header = false;      ///< a first line with the columns' names
-  Index samples_along = 0;  ///< so many points a path, evenly spaced; 0 = the path's own
 };
 
 /// Answers `length,error,converged,locally_shortest,status` a line, or with --json an array of paths: all destinations

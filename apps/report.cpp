@@ -133,8 +133,12 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
 void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& facts) {
   if (json.contains("seconds")) {
     Json& known = json["seconds"];
-    known["pictures"] = seconds;
-    if (known.contains("total")) known["total"] = known["total"].get<double>() + seconds;
+    if (known.is_object()) {
+      known["pictures"] = seconds;
+      if (known.contains("total")) known["total"] = known["total"].get<double>() + seconds;
+    } else {
+      known = known.get<double>() + seconds;  // of a command without stages
+    }
   }
   facts.push_back({"pictures", duration(seconds)});
 }

@@ -46,8 +46,8 @@ double spheroid_distance(const Vector& p, const Vector& q, double c, const Conte
 void add_row(Table& table, const std::string& name, const Surface& surface, const Vector& from, const Vector& to,
              double truth, const Context& context) {
   const ProcessorClock flow_clock;
-  const PathResult flow =
-      shortest_path(surface, from, to, {.method = CorrectionMethod::flow, .march = MarchMethod::axis}, context);
+  const MarchMethod march = surface.dim() <= kMostDimensionsOfCells ? MarchMethod::axis : PathOptions{}.march;
+  const PathResult flow = shortest_path(surface, from, to, {.method = CorrectionMethod::flow, .march = march}, context);
   const double flow_seconds = flow_clock.seconds();
   const ProcessorClock newton_clock;
   const PathResult newton = shortest_path(surface, from, to, {.tolerance = 1e-12}, context);

@@ -19,6 +19,8 @@ constexpr std::array kMissing = {-9999.0, -99999.0, -999999.0, -32768.0, -32767.
 constexpr double kBeyondAll = 1e30;  // 1e30, 1e38 and the largest float are in use
 /// How far outside the box of all others, as a multiple of its longest edge.
 constexpr double kFar = 10;
+/// Fewer others make no cloud that a point could lie outside of.
+constexpr Index kFewestOthers = 10;
 
 bool may_be_missing(const VectorIn& point) {
   if (point.isZero(0)) return true;
@@ -44,7 +46,8 @@ void drop_missing_values(const InputFile& file, PointCloud& cloud) {
       upper = upper.cwiseMax(point);
     }
   }
-  if (suspects.empty() || 2 * static_cast<Index>(suspects.size()) > n) return;
+  const Index num_others = n - static_cast<Index>(suspects.size());
+  if (suspects.empty() || num_others < std::max(kFewestOthers, n / 2)) return;
   const double edge = (upper - lower).maxCoeff();
   const auto outside = [&](Index j) {
     const auto point = cloud.points.col(j);

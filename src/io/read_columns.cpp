@@ -364,6 +364,14 @@ void skip_comments(const InputFile& file, TextReader& reader, const char* begin,
   } while (is_comment(reader.rest()));
 }
 
+/// Does a line of several columns follow the current one?
+bool table_follows(TextReader reader) {
+  RowParser parser;
+  if (!reader.next_line()) return false;
+  parser.choose_separator(reader.rest());
+  return parser.split(reader.rest()).size() > 1;
+}
+
 }  // namespace
 
 PointCloud read_columns(const InputFile& file, ColumnFormat format, const ColumnOptions& options) {
@@ -371,7 +379,8 @@ PointCloud read_columns(const InputFile& file, ColumnFormat format, const Column
   Comments comments;
   skip_comments(file, reader, file.bytes.data(), comments);
   Table table;
-  if (format != ColumnFormat::any) read_count_line(file, reader, table);
+  // A lone number heads a .csv only if it cannot be a first point of its own.
+  if (format != ColumnFormat::any || table_follows(reader)) read_count_line(file, reader, table);
   if (is_comment(reader.rest())) {  // behind the count
     comments.take(reader.rest());
     skip_comments(file, reader, reader.rest().data() + reader.rest().size(), comments);

@@ -4,7 +4,7 @@
 #include <array>
 #include <new>
 
-#include "io/gunzip.hpp"
+#include "io/inflate.hpp"
 #include "io/readers.hpp"
 
 namespace taut {

@@ -108,8 +108,11 @@ struct DistanceSolver::Impl {
         const Index j = open[i];
         const FanHit& hit = hits[i];
         if (std::isfinite(hit.distance)) take(j, hit, result);
-        const bool beyond = std::min(hit.distance, reach) >= options.max_distance;
-        if (hit.distance <= reach || beyond) {
+        const bool known = std::isfinite(hit.distance) && hit.distance <= reach;
+        // Without a limit, what no geodesic of a complete fan meets is left to drop_disconnected and ask_paths.
+        const bool beyond =
+            std::isfinite(options.max_distance) && std::min(hit.distance, reach) >= options.max_distance;
+        if (known || beyond) {
           if (beyond) forget(j, result);
           result.status[static_cast<std::size_t>(j)] = Status::ok;
           result.proof[static_cast<std::size_t>(j)] = beyond ? DistanceProof::none : DistanceProof::fan;

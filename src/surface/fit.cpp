@@ -22,15 +22,16 @@ void refuse_strays(const PointCloud& cloud) {
   const Index n = cloud.size();
   if (n == 0 || !cloud.points.allFinite()) return;  // the fits say what is wrong
   Vector middle(cloud.dim());
-  for (Index axis = 0; axis < cloud.dim(); ++axis) middle(axis) = detail::quantile(cloud.points.row(axis).transpose(), 0.5);
+  for (Index axis = 0; axis < cloud.dim(); ++axis)
+    middle(axis) = detail::quantile(cloud.points.row(axis).transpose(), 0.5);
   const Vector distance = (cloud.points.colwise() - middle).colwise().norm();
   const double usual = detail::quantile(distance, 0.95);
   Index first = 0;
   const double farthest = distance.maxCoeff(&first);
   if (!(usual > 0) || farthest <= kFar * usual) return;
   const Index count = (distance.array() > kFar * usual).count();
-  throw InvalidArgument("point " + std::to_string(first) + " at " + detail::describe(cloud.points.col(first)) + " lies " +
-                        detail::describe(farthest) + " from the middle of the cloud, 95 % of it within " +
+  throw InvalidArgument("point " + std::to_string(first) + " at " + detail::describe(cloud.points.col(first)) +
+                        " lies " + detail::describe(farthest) + " from the middle of the cloud, 95 % of it within " +
                         detail::describe(usual) +
                         (count > 1 ? " (" + std::to_string(count) + " such points)" : std::string()) +
                         ": take it out of the file if it is a placeholder");

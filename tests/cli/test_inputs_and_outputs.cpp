@@ -33,6 +33,7 @@ TEST(InputsAndOutputs, AFormulaMayStandInAFile) {
       run_taut({"path", "@" + file.string(), "--set", "R=2", "--from", "2,0,0", "--to", "0,2,0", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NEAR(nlohmann::json::parse(result.out)["length"].get<double>(), std::numbers::pi, 1e-9);
+  EXPECT_NE(run_taut({"info", file.string()}).err.find("write @"), std::string::npos);
   const auto bad = folder.write("bad.txt", "x^2 +\n y^^2 = 1\n");
   const test::ProgramResult refused = run_taut({"info", "@" + bad.string()});
   EXPECT_EQ(refused.exit_code, 3);
@@ -117,7 +118,7 @@ TEST(InputsAndOutputs, PointsAreSpacedEvenlyOnDemand) {
     for (std::string field; std::getline(row, field, ',');) numbers.push_back(std::stod(field));
     ASSERT_EQ(numbers.size(), 7U);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(numbers[k], numbers[k + 3], 1e-12);  // a unit sphere's normals
-    EXPECT_NEAR(numbers[6], angle, 1e-6);
+    EXPECT_NEAR(numbers[6], angle, 1e-9);
   }
 }
 

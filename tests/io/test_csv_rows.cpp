@@ -90,7 +90,7 @@ TEST(ReadPoints, WrongDimensionIsSaid) {
     static_cast<void>(read_points(folder.write("a.csv", "1,2,3,4\n"), 3));
     FAIL() << "accepted";
   } catch (const IoError& error) {
-    EXPECT_NE(std::string(error.what()).find("have 4 coordinates where 3 are needed"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("has 4 columns where 3 coordinates are needed"), std::string::npos)
         << error.what();
   }
   EXPECT_THROW(static_cast<void>(read_points(folder.write("b.txt", "\x89PNG\r\n"), 3)), IoError);

@@ -25,7 +25,7 @@ TEST(SurfaceSummary, TellsAreaHandlesAndEnds) {
   for (const Case& c :
        {Case{"x^2+y^2+z^2=1", {}, 4 * pi, 2, true},
         Case{"(x^2+y^2+z^2+0.84)^2=4*(x^2+y^2)", {}, 4 * pi * pi * 0.4, 0, true},
-        Case{"x^2+y^2+z^2=1", {"z >= 0"}, 2 * pi, 1, false}, Case{"x^2+y^2=1", {"0 <= z <= 2"}, 4 * pi, 0, false}}) {
+        Case{"x^2+y^2+z^2=1", {"z >= 0"}, 2 * pi, 1, false}, Case{"x^2+y^2+0z=1", {"0 <= z <= 2"}, 4 * pi, 0, false}}) {
     const SurfaceSummary summary = summarise(parse_surface(c.formula, {.domain = c.domain}));
     ASSERT_TRUE(summary.shape) << c.formula;
     EXPECT_NEAR(summary.shape->area, c.area, 0.02 * c.area) << c.formula;  // triangles of some 60 cells a length

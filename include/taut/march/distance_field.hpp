@@ -12,7 +12,7 @@ namespace taut {
 enum class MarchMethod {
   convergent,  ///< upwind updates on the projected points of all 3^d - 1 neighbours; second order, the default
   axis,        ///< the paper's: fast marching between cell centres, axis by axis; biased on the crossed cells alone,
-         ///< converges in an envelope of more layers (docs/march.md)
+               ///< converges in an envelope of more layers (docs/march.md)
   dijkstra,  ///< shortest walk over the projected points of cells that touch, in an envelope over their centres; biased
 };
 

@@ -31,8 +31,8 @@ struct FitOptions {
 
 using FitModel = std::variant<RbfModel, LocalFitModel>;
 
-/// Fits a surface to a cloud by the method that suits its size. Throws what the two fits throw, and InvalidArgument for a
-/// local fit in more than 3 dimensions and for a point that lies far from all others, naming it.
+/// Fits a surface to a cloud by the method that suits its size. Throws what the two fits throw, and InvalidArgument for
+/// a local fit in more than 3 dimensions and for a point that lies far from all others, naming it.
 [[nodiscard]] FitModel fit_surface(const PointCloud& cloud, const FitOptions& options = {},
                                    const Context& context = {});
 

@@ -20,8 +20,9 @@ struct LocalFitReport {
   Index residual_at = 0;  ///< the sample (of the cloud, from 0) with the largest
 };
 
-/// A surface in R^2 or R^3 put together of many small pieces: polynomials of degree three, each fitted to the samples in
-/// one ball, blended where the balls overlap (a partition of unity). What `fit_local` makes and a `.taut` file holds.
+/// A surface in R^2 or R^3 put together of many small pieces: polynomials of degree three, each fitted to the samples
+/// in one ball, blended where the balls overlap (a partition of unity). What `fit_local` makes and a `.taut` file
+/// holds.
 struct LocalFitModel {
   Points centres;  ///< d x m, model units
   Vector radii;    ///< m
@@ -36,9 +37,9 @@ struct LocalFitModel {
 };
 
 struct LocalFitOptions {
-  /// A length >= 0 in model units: patches are at least so large that ripples of this wavelength are flattened to about
-  /// half. 0 = patches as small as the samples allow. Unset = chosen by cross-validation, as small as they are allowed
-  /// for a mesh, whose vertices are taken at their word.
+  /// A length >= 0 in model units: patches are at least so large that ripples of this wavelength are flattened to less
+  /// than two thirds. 0 = patches as small as the samples allow. Unset = chosen by cross-validation, as small as they
+  /// are allowed for a mesh, whose vertices are taken at their word.
   std::optional<double> smoothing = std::nullopt;
   /// The surface ends this far from every sample, model units. 0 = chosen, for each sample by its own spacing.
   double support_radius = 0;

@@ -261,7 +261,6 @@ void Parser::bare_argument(const Function& function, std::size_t column, double 
   if (!operand || function.max_arguments > 1) {
     fail(column, name + " is a function and needs parentheses: " + name + "(...)");
   }
-  const std::string argument(token_.text);
   if (token_.kind == TokenKind::number) {
     values_.push_back(graph_.constant(token_.number));
     advance();
@@ -276,7 +275,8 @@ void Parser::bare_argument(const Function& function, std::size_t column, double 
                          (next == TokenKind::bar && !frames_.back().bars) ||
                          (next == TokenKind::name && find_function(token_.text) == nullptr);
   if (continues) {
-    fail(token_.column, name + " " + argument + " " + shown() + " can be read two ways: write " + name + "(...)");
+    fail(token_.column, "this can be read two ways, since nothing says where the argument of " + name +
+                            " ends: write " + name + "(...)");
   }
 }
 

@@ -74,8 +74,8 @@ void wish_for_rims(OrientedSamples samples, const KdTree& tree, const Vector& sp
   }
 }
 
-/// A large smoothing length may put the whole cloud into one ball. So many samples tell a cubic all there is to tell: of
-/// more, ordered by their distance, every second, third, ... is taken.
+/// A large smoothing length may put the whole cloud into one ball. So many samples tell a cubic all there is to tell:
+/// of more, ordered by their distance, every second, third, ... is taken.
 void thin(std::vector<Neighbour>& near) {
   constexpr std::size_t kMostSamples = 2000;
   const std::size_t step = near.size() / kMostSamples + 1;

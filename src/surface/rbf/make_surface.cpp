@@ -42,8 +42,8 @@ Surface make_surface(std::shared_ptr<const RbfModel> model) {
   if (model->samples.size() > 0) {
     extras.box = box_around(*model);
     if (model->support_radius > 0) {
-      extras.domain = detail::make_support_domain(
-          extras.samples, Vector::Constant(model->samples.size(), model->support_radius));
+      extras.domain =
+          detail::make_support_domain(extras.samples, Vector::Constant(model->samples.size(), model->support_radius));
     }
   }
   return Surface(std::make_shared<detail::RbfFunction>(*model), std::move(extras));
