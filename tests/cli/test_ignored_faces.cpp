@@ -24,7 +24,7 @@ TEST(IgnoredFaces, OfAFineMeshAreNotWorthAWord) {
   ASSERT_EQ(run_taut({"mesh", "x^2+y^2+z^2=1", "--cell", "0.2", "--out", mesh}).exit_code, 0);
   const ProgramResult result = run_taut({"path", mesh, "--from", "1,0,0", "--to", "0,0,1"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_EQ(result.err.find("faces"), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("faces are ignored"), std::string::npos) << result.err;
 }
 
 }  // namespace

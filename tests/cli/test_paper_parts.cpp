@@ -69,12 +69,13 @@ TEST(ClassicalMds, FindsPointsAgainFromTheirDistances) {
 
 TEST(FarthestPoints, OfASphereStartWithTheAntipode) {
   SurfaceCells cells(unit_sphere(), subdivide(unit_sphere(), {.size = 0.05}));
-  const FarthestPoints chosen = farthest_points(unit_sphere(), cells, Eigen::Vector3d(0, 0, 1), 6);
-  // The antipode, then anywhere on the equator, then three more a quarter turn apart: an octahedron, to a cell.
+  const FarthestPoints chosen = farthest_points(unit_sphere(), cells, Eigen::Vector3d(0, 0, 1), 5);
+  // The antipode, then anywhere on the equator, then two more there: wherever they are, a quarter turn from all others
+  // at least, to a cell. (A sixth need not find so much room.)
   EXPECT_NEAR(chosen.points(2, 1), -1, 0.02);
   EXPECT_NEAR(chosen.cover[0], std::numbers::pi, 0.06);
   EXPECT_NEAR(chosen.cover[1], std::numbers::pi / 2, 0.06);
-  for (Index i = 0; i < 6; ++i) {
+  for (Index i = 0; i < 5; ++i) {
     for (Index j = 0; j < i; ++j) {
       EXPECT_GT(std::acos(chosen.points.col(i).dot(chosen.points.col(j))), std::numbers::pi / 2 - 0.15)
           << i << " " << j;
@@ -101,8 +102,7 @@ TEST(GeodesicDelaunay, OfManyPointsIsTheSphereAgain) {
   EXPECT_GT(smallest_angles(mesh).mean(), 40) << "farthest points make well-shaped triangles";
 }
 
-TEST(WindingPattern, OnASphereEveryCircuitGoesOnceRound) {
-  // On an ellipsoid close to the sphere one circuit goes a little more or less than once round; the pattern closes.
+TEST(WindingPattern, ClosesAndKeepsClairautsConstant) {
   const Surface vessel = parse_surface("x^2+y^2+(z/1.5)^2=1");
   const WindingPattern pattern = close_winding(vessel, 1, 0.5, 9, {});
   EXPECT_LT(pattern.closing_miss, 1e-9);
