@@ -31,7 +31,7 @@ Points globe_line(double latitude0, double longitude0, double latitude1, double 
 
 Drawing vector_triangle() {
   Drawing drawing{.width = 800, .height = 540, .title = "The vector triangle at a node and its tangential part"};
-  const SpaceView view(-12, 30, 430, {400, 585});
+  const SpaceView view(-12, 30, 430, {400, 425});
   const double south = 22, north = 74, west = -62, east = 62;
   // The patch of surface.
   Points outline(3, 0);
