@@ -1,10 +1,8 @@
-// Equation (5), min |F(p)| subject to (p - p') . AB = 0, is solved as two equations F(p) = 0 and (p - p') . AB = 0 by
-// the projection onto a surface of codimension 2.
-
 #include "gap_filling.hpp"
 
-#include <algorithm>
-#include <memory>
+#include <Eigen/QR>
+#include <cmath>
+#include <limits>
 
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
@@ -12,64 +10,51 @@
 namespace taut::paper {
 namespace {
 
-/// F and the plane through `origin` across `axis`: two equations.
-class CutByPlane final : public ImplicitFunction {
- public:
-  CutByPlane(const Surface& surface, Vector origin, Vector axis)
-      : surface_(surface), origin_(std::move(origin)), axis_(std::move(axis)) {}
-
-  [[nodiscard]] Index dim() const override { return surface_.dim(); }
-  [[nodiscard]] Index codim() const override { return 2; }
-  [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override { return std::make_unique<Cut>(*this); }
-
- private:
-  class Cut final : public Evaluator {
-   public:
-    explicit Cut(const CutByPlane& function)
-        : Evaluator(function.dim(), 2), function_(function), inner_(function.surface_.make_evaluator()) {}
-
-    void evaluate(const PointBatch& batch) override {
-      for (Index j = 0; j < batch.n; ++j) {
-        const double* x = batch.x + j * dim_;
-        double value = 0;
-        Vector gradient(dim_);
-        Eigen::MatrixXd hessian(dim_, dim_);
-        PointBatch one{.n = 1, .x = x, .value = &value, .jacobian = gradient.data()};
-        if (batch.hessian != nullptr) {
-          one.weight = batch.weight + 2 * j;
-          one.hessian = hessian.data();
+/// Equation (5), min |F(p)| subject to (p - middle) . AB = 0: the nearest zero of F along the axes of that plane, by a
+/// walk to the first change of sign and bisection. Of the many ways to solve (5) it is one that needs no gradient,
+/// which may vanish half-way between two walls. `middle` itself where there is no zero within reach.
+Vector nearest_in_plane(const Surface& surface, const Vector& middle, const Vector& ab) {
+  constexpr int kSteps = 400;          // of a twentieth of the gap
+  constexpr int kBisections = 60;      // to rounding
+  constexpr double kOnSurface = 1e-6;  // of the gap: else F only jumps there
+  const double gap = ab.norm();
+  const auto value = [&surface](const Vector& x) { return surface.value(x)(0, 0); };
+  const double at_middle = value(middle);
+  if (std::abs(at_middle) <= 1e-12 * gap) return middle;
+  const Eigen::MatrixXd axes = Eigen::HouseholderQR<Eigen::MatrixXd>(ab).householderQ();  // the first along AB
+  Vector nearest = middle;
+  double least = std::numeric_limits<double>::infinity();
+  for (Index axis = 1; axis < ab.size(); ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const Vector step = 0.05 * gap * side * axes.col(axis);
+      for (int k = 1; k <= kSteps && (k - 1) * step.norm() < least; ++k) {
+        if (value(middle + k * step) * at_middle > 0) continue;
+        double near = k - 1;
+        double far = k;
+        for (int i = 0; i < kBisections; ++i) {
+          const double half = 0.5 * (near + far);
+          (value(middle + half * step) * at_middle > 0 ? near : far) = half;
         }
-        inner_->evaluate(one);
-        const Eigen::Map<const Vector> place(x, dim_);
-        if (batch.value != nullptr) {
-          batch.value[2 * j] = value;
-          batch.value[2 * j + 1] = function_.axis_.dot(place - function_.origin_);
+        const Vector found = middle + far * step;
+        if (std::abs(value(found)) <= kOnSurface * gap && far * step.norm() < least) {
+          least = far * step.norm();
+          nearest = found;
         }
-        if (batch.jacobian != nullptr) {
-          Eigen::Map<Points>(batch.jacobian + 2 * j * dim_, dim_, 2) << gradient, function_.axis_;
-        }
-        if (batch.hessian != nullptr) Eigen::Map<Points>(batch.hessian + j * dim_ * dim_, dim_, dim_) = hessian;
+        break;
       }
     }
-
-   private:
-    const CutByPlane& function_;
-    std::unique_ptr<Evaluator> inner_;
-  };
-
-  Surface surface_;
-  Vector origin_;
-  Vector axis_;
-};
+  }
+  return nearest;
+}
 
 Vector new_node(const Surface& surface, const Vector& a, const Vector& b, NodeProjection projection) {
-  const Vector middle = 0.5 * (a + b);
+  if (projection == NodeProjection::in_plane) return nearest_in_plane(surface, 0.5 * (a + b), b - a);
+  // A thousandth off the middle: exactly half-way between two walls the gradient vanishes.
+  const Vector start = 0.501 * a + 0.499 * b;
   try {
-    if (projection == NodeProjection::ordinary) return project_to_surface(surface, middle).point;
-    const Surface cut(std::make_shared<const CutByPlane>(surface, middle, (b - a).normalized()));
-    return project_to_surface(cut, middle).point;
+    return project_to_surface(surface, start).point;
   } catch (const SingularPoint&) {
-    return middle;
+    return start;
   }
 }
 

@@ -21,7 +21,8 @@ struct Part {
 // Each writes the sections of one part. Throw what the library throws.
 void write_figure1(Study& study, Report& report);
 void write_figure2(Study& study, Report& report);
-void write_figure3(Study& study, Report& report);  ///< and Figure 4
+void write_figure3(Study& study, Report& report);
+void write_figure4(Study& study, Report& report);
 void write_figure5(Study& study, Report& report);
 void write_figure6(Study& study, Report& report);
 void write_figure7(Study& study, Report& report);
