@@ -8,6 +8,15 @@ function(taut_configure_target target)
   endif()
 endfunction()
 
+# taut_precompile(target headers...): reads Eigen, the standard library and the named headers once for a target, not once
+# a source: that was two thirds of the time a source took. The dev preset leaves it out, so that each source is seen to
+# include what it uses.
+function(taut_precompile target)
+  target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory>
+    <optional> <random> <span> <string> <string_view> <unordered_map> <utility> <vector>
+    <Eigen/Core> <Eigen/Geometry> <Eigen/QR> <Eigen/Eigenvalues> <Eigen/Cholesky> ${ARGN})
+endfunction()
+
 # taut_room(NAME HEADERS a.hpp ... SOURCES b.cpp ...): adds one room of the house to the library. Headers are public,
 # relative to include/taut/NAME; sources are relative to the calling folder.
 function(taut_room name)
@@ -26,5 +35,6 @@ function(taut_test room)
   target_include_directories(test_${room} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_compile_definitions(test_${room} PRIVATE TAUT_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   target_link_libraries(test_${room} PRIVATE taut::taut GTest::gmock GTest::gtest_main)
+  taut_precompile(test_${room} <gtest/gtest.h>)
   gtest_discover_tests(test_${room} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
 endfunction()
