@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -22,6 +23,22 @@ using Json = nlohmann::ordered_json;
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
+
+/// Angles in degrees; null over a border, where there is no other side.
+Json piece_json(const PathPiece& piece) {
+  constexpr double kDegrees = 180 / std::numbers::pi;
+  Json json = {{"kind", taut::to_string(piece.kind)}, {"point", vector_json(piece.point)}};
+  switch (piece.kind) {
+    case PathPiece::Kind::face: json["face"] = piece.face; [[fallthrough]];
+    case PathPiece::Kind::edge:
+    case PathPiece::Kind::border: json["length"] = number(piece.length); break;
+    case PathPiece::Kind::crossing: json["angle"] = number(kDegrees * piece.left); break;
+    case PathPiece::Kind::corner:
+      json["angles"] = {number(kDegrees * piece.left), number(kDegrees * piece.right)};
+      break;
+  }
+  return json;
+}
 
 bool has_path(const PathResult& result) { return result.points.cols() > 0; }
 
@@ -108,6 +125,10 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
                   {"locally_shortest", candidate.locally_shortest}};
     if (options.all) entry["points"] = points_json(candidate.points);
     json["candidates"].push_back(std::move(entry));
+  }
+  if (!result.pieces.empty()) {
+    json["pieces"] = Json::array();
+    for (const PathPiece& piece : result.pieces) json["pieces"].push_back(piece_json(piece));
   }
   json["unique"] = nullptr;
   if (has_path(result) && (result.rivals_sought || !result.unique)) json["unique"] = result.unique;

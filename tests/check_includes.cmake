@@ -1,14 +1,15 @@
 cmake_minimum_required(VERSION 3.25)
-# Fails when a room includes what stands above it: core < surface < cells < march < curve < fan < query; io and view stand
+# Fails when a room includes what stands above it: core < surface < cells < march < curve < fan < strata < query; io and view stand
 # beside, on core, surface and cells, and view on io.
-set(rooms core surface cells march curve fan query io view)
+set(rooms core surface cells march curve fan strata query io view)
 set(below_core core)
 set(below_surface core surface)
 set(below_cells core surface cells)
 set(below_march core surface cells march)
 set(below_curve core surface cells march curve)
 set(below_fan core surface cells march curve fan)
-set(below_query core surface cells march curve fan query)
+set(below_strata core surface cells march curve strata)
+set(below_query core surface cells march curve fan strata query)
 set(below_io core surface io)
 set(below_view core surface cells io view)
 

@@ -6,14 +6,17 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "core/parallel.hpp"
 #include "curve/polyline.hpp"
 #include "query/check_options.hpp"
 #include "query/corrector.hpp"
+#include "query/facet_search.hpp"
 #include "query/path_search.hpp"
 #include "query/stopwatch.hpp"
+#include "surface/formula/formula_function.hpp"
 
 namespace taut {
 namespace {
@@ -49,6 +52,12 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
   return shared;
 }
 
+/// May paths have to cross edges.
+bool has_kinks(const Surface& surface) {
+  const auto* formula = dynamic_cast<const detail::FormulaFunction*>(&surface.function());
+  return formula != nullptr && formula->program().has_kinks();
+}
+
 }  // namespace
 
 struct PathSolver::Impl {
@@ -57,7 +66,8 @@ struct PathSolver::Impl {
         options(options_of),
         user(user_of),
         context(in_turn(user, turn, batch)),
-        search(surface, options, context) {}
+        search(surface, options, context),
+        kinked(surface.dim() == 3 && surface.codim() == 1 && has_kinks(surface)) {}
 
   using Corrector = detail::Corrector;
 
@@ -68,8 +78,13 @@ struct PathSolver::Impl {
   std::shared_ptr<std::atomic<bool>> batch = std::make_shared<std::atomic<bool>>(false);
   Context context;  // the user's, fit for several threads
   detail::PathSearch search;
+  bool kinked;
+  std::mutex facets_turn;
+  std::unique_ptr<detail::FacetSearch> facets;  // made where it is first needed
 
   [[nodiscard]] const detail::CellLevels& levels() const { return search.levels(); }
+  /// The shortest path between points of the surface, whatever it is made of.
+  [[nodiscard]] PathResult find(const Vector& p, const Vector& q, Corrector& corrector);
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -123,6 +138,37 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
   return results;
 }
 
+/// On a surface with edges their search comes first: the others would follow one face beyond its end, or go round. On a
+/// smooth one that is cut, only where the path meets the border.
+PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& corrector) {
+  const bool cut = surface.domain() != nullptr;
+  if ((!kinked && !cut) || p == q) return search.find(p, q, corrector);
+  const auto over_faces = [&]() -> std::optional<PathResult> {
+    const std::scoped_lock lock(facets_turn);
+    if (!facets) facets = std::make_unique<detail::FacetSearch>(surface, options, context);
+    if (!facets->is_ready()) return std::nullopt;
+    return facets->find(p, q, levels().extent());
+  };
+  if (kinked) {
+    std::optional<PathResult> found = over_faces();
+    if (found && found->status == Status::ok) return *std::move(found);
+    PathResult other = search.find(p, q, corrector);
+    if (other.status == Status::ok && other.message.empty() && other.corrected) {
+      other.message = found ? fmt::format("a shorter path may exist: {}", found->message)
+                            : "a shorter path may exist: over the edges of this surface it is looked for by Newton's "
+                              "method on the convergent march only, and where the domain has no kinks";
+      other.rivals_sought = false;
+    }
+    return other;
+  }
+  PathResult found = search.find(p, q, corrector);
+  if (found.status != Status::left_domain && (found.status != Status::ok || found.message.empty())) return found;
+  std::optional<PathResult> other = over_faces();
+  if (!other || other->status != Status::ok) return found;
+  if (found.status == Status::ok && found.length <= other->length) return found;
+  return *std::move(other);
+}
+
 PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   Impl& impl = *impl_;
   detail::check_point(impl.surface, p, "start");
@@ -131,8 +177,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   impl.search.prepare(detail::chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
-  PathResult result =
-      impl.search.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+  PathResult result = impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
   result.seconds.cells += box_seconds;
   return result;
 }
@@ -140,7 +185,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
 void PathSolver::expect(const PointsIn& near, Index num_pairs) {
   Impl& impl = *impl_;
   impl.search.prepare(finite_columns(near, impl.surface.dim()));
-  impl.search.tabulate(num_pairs);
+  if (!impl.kinked) impl.search.tabulate(num_pairs);
 }
 
 std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const PointsIn& to) {
@@ -152,11 +197,11 @@ std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const Poin
   Points both(from.rows(), 2 * from.cols());
   both << from, to;
   expect(both, from.cols());
-  return impl.for_all(from.cols(), true, [&](Index j, Impl::Corrector& corrector) {
+  return impl.for_all(from.cols(), !impl.kinked, [&](Index j, Impl::Corrector& corrector) {
     detail::check_point(impl.surface, from.col(j), "start");
     detail::check_point(impl.surface, to.col(j), "end");
-    return impl.search.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
-                            corrector);
+    return impl.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
+                     corrector);
   });
 }
 
@@ -171,10 +216,9 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
     detail::check_point(impl.surface, targets.col(j), "end");
     return impl.levels().on_surface(targets.col(j), "end");
   };
-  if (!impl.levels().exist() || impl.levels().lazy()) {
-    return impl.for_all(targets.cols(), true, [&](Index j, Impl::Corrector& corrector) {
-      return impl.search.find(from, target(j), corrector);
-    });
+  if (!impl.levels().exist() || impl.levels().lazy() || impl.kinked) {
+    return impl.for_all(targets.cols(), !impl.kinked,
+                        [&](Index j, Impl::Corrector& corrector) { return impl.find(from, target(j), corrector); });
   }
   PathSeconds shared;
   detail::Stopwatch watch;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "taut/core/context.hpp"
@@ -71,6 +72,36 @@ struct PathCandidate {
   Points points;  ///< d x m
 };
 
+/// A piece of a path on a surface with edges, corners or a border.
+struct PathPiece {
+  enum class Kind {
+    face,      ///< a geodesic arc on a smooth face
+    edge,      ///< an arc along an edge between two faces
+    border,    ///< an arc along the border of the surface
+    crossing,  ///< of an edge: a point
+    corner,    ///< a point
+  };
+  Kind kind = Kind::face;
+  std::string face;   ///< of an arc on a face: the formula that holds there, as text
+  double length = 0;  ///< of an arc, model units
+  Vector point;       ///< d: where the piece begins, or the point
+  /// Radians. At a crossing: between the path and the edge, on either side. At a corner: the angle of the surface on
+  /// the left and on the right of the path, infinite over a border; both are at least pi.
+  double left = 0;
+  double right = 0;
+};
+
+[[nodiscard]] constexpr std::string_view to_string(PathPiece::Kind kind) {
+  switch (kind) {
+    case PathPiece::Kind::face: return "face";
+    case PathPiece::Kind::edge: return "edge";
+    case PathPiece::Kind::border: return "border";
+    case PathPiece::Kind::crossing: return "crossing";
+    case PathPiece::Kind::corner: return "corner";
+  }
+  return "unknown";
+}
+
 /// A path: the geodesic and how it was found.
 struct PathResult : Geodesic {
   Vector from;  ///< d: the start, on the surface
@@ -96,6 +127,8 @@ struct PathResult : Geodesic {
   /// Were other ways round looked for. If not (more than 6 dimensions and a straight walk arrives, or a march that
   /// tells no ways apart), `unique` says nothing, and the path may not be the shortest; PathOptions::all looks always.
   bool rivals_sought = true;
+  /// In order from start to end, on a surface that is not smooth, or where the path meets its border; else empty.
+  std::vector<PathPiece> pieces;
   PathSeconds seconds;
   /// Appendix II of the paper, of this curve; empty where no flow corrected it.
   std::optional<FlowSummary> flow;

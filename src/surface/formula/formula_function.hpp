@@ -16,6 +16,7 @@ class FormulaFunction : public ImplicitFunction {
   [[nodiscard]] Index codim() const override { return program_->codim(); }
   [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
   [[nodiscard]] std::string_view kind() const override { return "formula"; }
+  [[nodiscard]] const FormulaProgram& program() const { return *program_; }
 
  private:
   std::shared_ptr<const FormulaProgram> program_;

@@ -25,6 +25,10 @@ FormulaProgram::FormulaProgram(Graph graph, std::vector<NodeId> components, Inde
     : dim_(dim), components_(std::move(components)), graph_(std::move(graph)) {
   graph_.fold_exactly();
   value_shows_nan_ = find_nan();
+  for (std::size_t id = 0; id < graph_.size(); ++id) {
+    const Op op = graph_[static_cast<NodeId>(id)].op;
+    has_kinks_ = has_kinks_ || op == Op::minimum || op == Op::maximum || op == Op::absolute || op == Op::sign;
+  }
 }
 
 /// All operations but powers (NaN^0 = 1) pass a NaN on, so that it reaches the component that reads it.

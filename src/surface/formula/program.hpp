@@ -2,6 +2,7 @@
 
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "surface/formula/derivative.hpp"
@@ -23,6 +24,13 @@ class FormulaProgram {
 
   [[nodiscard]] Index dim() const { return dim_; }
   [[nodiscard]] Index codim() const { return static_cast<Index>(components_.size()); }
+  /// May F have places where it is not smooth: minima, maxima, absolute values, signs.
+  [[nodiscard]] bool has_kinks() const { return has_kinks_; }
+  /// The graph so far and the components of F in it.
+  [[nodiscard]] std::pair<Graph, std::vector<NodeId>> expressions() const {
+    const std::scoped_lock lock(mutex_);
+    return {graph_, components_};
+  }
   /// Is some component NaN wherever a coordinate is.
   [[nodiscard]] bool value_shows_nan() const { return value_shows_nan_; }
 
@@ -51,6 +59,7 @@ class FormulaProgram {
   Index dim_;
   std::vector<NodeId> components_;
   bool value_shows_nan_;
+  bool has_kinks_ = false;
 
   // The graph grows under the mutex as derivatives are asked for. In which order they are does not show in any number:
   // a node's value depends on its operands alone.

@@ -1,0 +1,483 @@
+// A surface as a complex of smooth faces.
+//
+// A choice of sides s for the kinks makes F smooth: F_s. Equal formulas are one face. Next to a surface point x, where
+// the conditions in Z vanish, each choice of sides for Z claims a wedge of its tangent plane,
+//   { v : grad F_s . v = 0,  s_z grad c_z . v >= 0 for z in Z,  grad g_j . v >= 0 for domain components in Z },
+// and the wedges that are not empty lie around x in a ring, since grad F points to the same side of all of them. Wedges
+// of one face that touch are one: there F does not depend on the side.
+#include "strata/faceted_surface.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace taut::detail {
+namespace {
+
+constexpr double kTwoPi = 2 * std::numbers::pi;
+/// More conditions than this at one point are not sorted out: 2^n choices.
+constexpr std::size_t kMostAtAPoint = 8;
+/// Rays of neighbouring wedges agree within this, radians: the point is known to rounding, the faces are smooth.
+constexpr double kSameRay = 1e-5;
+/// Thinner wedges are rounding.
+constexpr double kThinWedge = 1e-6;
+/// Squared sine of the angle between level sets below which they do not cross.
+constexpr double kParallel = 1e-14;
+/// A condition whose level set is as flat as this against the face has no edge to first order, radians.
+constexpr double kTangential = 1e-7;
+
+double in_turn(double angle) {
+  angle = std::fmod(angle, kTwoPi);
+  return angle < 0 ? angle + kTwoPi : angle;
+}
+
+}  // namespace
+
+std::unique_ptr<FacetedSurface> FacetedSurface::of(const Surface& surface) {
+  if (surface.dim() != 3 || surface.codim() != 1) return nullptr;
+  std::unique_ptr<FormulaKinks> kinks = FormulaKinks::of(surface.function());
+  if (!kinks && surface.domain() == nullptr) return nullptr;
+  if (surface.domain() != nullptr && FormulaKinks::of(*surface.domain())) return nullptr;
+  std::unique_ptr<FacetedSurface> result(new FacetedSurface(surface));
+  if (kinks) {
+    result->num_kinks_ = static_cast<int>(kinks->num_kinks());
+    result->conditions_ = kinks->conditions()->make_evaluator();
+    result->kinks_ = std::move(kinks);
+  }
+  if (surface.domain() != nullptr) {
+    result->num_domain_ = static_cast<int>(surface.domain()->codim());
+    result->domain_ = surface.domain()->make_evaluator();
+  }
+  return result;
+}
+
+void FacetedSurface::undecided(const Box& box, std::vector<int>& found) {
+  found.clear();
+  const auto look = [&](Evaluator* evaluator, int count, int first) {
+    if (evaluator == nullptr) return;
+    Eigen::VectorXd lower(count);
+    Eigen::VectorXd upper(count);
+    const bool bounded = evaluator->bounds({.n = 1,
+                                            .lower = box.lower.data(),
+                                            .upper = box.upper.data(),
+                                            .value_lower = lower.data(),
+                                            .value_upper = upper.data()});
+    for (int i = 0; i < count; ++i) {
+      if (!bounded || !(lower(i) > 0 || upper(i) < 0)) found.push_back(first + i);
+    }
+  };
+  look(conditions_.get(), num_kinks_, 0);
+  look(domain_.get(), num_domain_, num_kinks_);
+}
+
+void FacetedSurface::evaluate_conditions(const Point3& x, Eigen::VectorXd& value,
+                                         Eigen::Matrix<double, 3, Eigen::Dynamic>* gradient) {
+  value.resize(num_conditions());
+  if (gradient != nullptr) gradient->resize(3, num_conditions());
+  const auto fill = [&](Evaluator* evaluator, int first) {
+    if (evaluator == nullptr) return;
+    evaluator->evaluate({.n = 1,
+                         .x = x.data(),
+                         .value = value.data() + first,
+                         .jacobian = gradient != nullptr ? gradient->data() + 3 * first : nullptr});
+  };
+  if (gradient != nullptr) gradient->setZero();
+  fill(conditions_.get(), 0);
+  fill(domain_.get(), num_kinks_);
+}
+
+int FacetedSurface::face_of(const FormulaKinks::Sides& sides) {
+  if (last_face_ >= 0 && sides == last_sides_) return last_face_;
+  last_sides_ = sides;
+  const auto known = face_of_sides_.find(sides);
+  if (known != face_of_sides_.end()) return last_face_ = known->second;
+  const std::vector<NodeId> roots = kinks_ ? kinks_->face(sides) : std::vector<NodeId>{};
+  auto found = face_of_roots_.find(roots);
+  if (found == face_of_roots_.end()) {
+    std::shared_ptr<const ImplicitFunction> function;
+    if (kinks_) {
+      function = kinks_->function(roots);
+    } else {
+      function = std::shared_ptr<const ImplicitFunction>(std::make_shared<Surface>(surface_), &surface_.function());
+    }
+    faces_.push_back(std::make_unique<SmoothFace>(Surface(std::move(function))));
+    if (kinks_) faces_.back()->text = kinks_->text(roots.front());
+    found = face_of_roots_.emplace(roots, static_cast<int>(faces_.size()) - 1).first;
+  }
+  face_of_sides_.emplace(sides, found->second);
+  return last_face_ = found->second;
+}
+
+const FormulaKinks::Sides& FacetedSurface::sides_at(const Point3& x) {
+  evaluate_conditions(x, values_, nullptr);
+  sides_.resize(static_cast<std::size_t>(num_kinks_));
+  for (int i = 0; i < num_kinks_; ++i) sides_[static_cast<std::size_t>(i)] = values_(i) >= 0 ? 1 : -1;
+  return sides_;
+}
+
+int FacetedSurface::face_at(const Point3& x) { return face_of(sides_at(x)); }
+
+std::vector<std::pair<int, FormulaKinks::Sides>> FacetedSurface::faces_near(const Point3& x,
+                                                                            const std::vector<int>& kinks) {
+  const FormulaKinks::Sides sides = sides_at(x);
+  std::vector<std::pair<int, FormulaKinks::Sides>> found;
+  if (!kinks_) {
+    found.emplace_back(face_of(sides), sides);
+    return found;
+  }
+  for (FormulaKinks::Sides& choice : kinks_->choices(sides, kinks)) {
+    const int face = face_of(choice);
+    found.emplace_back(face, std::move(choice));
+  }
+  return found;
+}
+
+double FacetedSurface::violation(int face, const Point3& x, int* condition) {
+  (void)sides_at(x);
+  bool outside = false;
+  for (int i = num_kinks_; i < num_conditions(); ++i) outside = outside || values_(i) < 0;
+  const bool same = face_of(sides_) == face;
+  if (same && !outside) return 0;
+  Eigen::VectorXd value;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gradient;
+  const FormulaKinks::Sides sides = sides_;
+  evaluate_conditions(x, value, &gradient);
+  const auto distance = [&](int i) { return std::abs(value(i)) / std::max(gradient.col(i).norm(), 1e-300); };
+  double worst = 0;
+  int worst_condition = -1;
+  for (int i = num_kinks_; i < num_conditions(); ++i) {
+    if (value(i) < 0 && distance(i) > worst) {
+      worst = distance(i);
+      worst_condition = smooth_condition(i, sides);
+    }
+  }
+  if (!same) {
+    // The nearest kinks whose other sides lead to the face: choices in the order of their farthest kink.
+    std::vector<int> order(static_cast<std::size_t>(num_kinks_));
+    for (int i = 0; i < num_kinks_; ++i) order[static_cast<std::size_t>(i)] = i;
+    std::sort(order.begin(), order.end(), [&](int i, int j) { return distance(i) < distance(j); });
+    if (order.size() > kMostAtAPoint) order.resize(kMostAtAPoint);
+    double least = std::numeric_limits<double>::infinity();
+    int deepest = -1;
+    FormulaKinks::Sides at;
+    for (std::size_t choice = 1; choice < (std::size_t{1} << order.size()) && deepest < 0; ++choice) {
+      at = sides;
+      int far = -1;
+      for (std::size_t i = 0; i < order.size(); ++i) {
+        if (!(choice >> i & 1)) continue;
+        auto& side = at[static_cast<std::size_t>(order[i])];
+        side = static_cast<std::int8_t>(-side);
+        far = order[i];
+      }
+      if (face_of(at) != face) continue;
+      least = distance(far);
+      deepest = far;
+    }
+    if (least > worst || deepest < 0) {
+      worst = least;
+      worst_condition = deepest >= 0 ? smooth_condition(deepest, at) : -1;
+    }
+  }
+  if (condition != nullptr) *condition = worst_condition;
+  return worst;
+}
+
+int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides) {
+  if (index >= num_kinks_) {
+    const auto [at, added] = smooth_of_.try_emplace({1, static_cast<NodeId>(index - num_kinks_)}, 0);
+    if (added) {
+      at->second = static_cast<int>(smooth_.size());
+      smooth_.push_back({surface_.domain()->make_evaluator(), index - num_kinks_, num_domain_});
+    }
+    return at->second;
+  }
+  const auto [known, unknown] = smooth_of_sides_.try_emplace({index, sides}, 0);
+  if (!unknown) return known->second;
+  const NodeId node = kinks_->condition(index, sides);
+  const auto [at, added] = smooth_of_.try_emplace({0, node}, 0);
+  if (added) {
+    at->second = static_cast<int>(smooth_.size());
+    smooth_.push_back({kinks_->function({node})->make_evaluator(), 0, 1});
+  }
+  known->second = at->second;
+  return at->second;
+}
+
+double FacetedSurface::function(int face, const Point3& x, Point3& gradient) {
+  double value = 0;
+  this->face(face).evaluator->evaluate({.n = 1, .x = x.data(), .value = &value, .jacobian = gradient.data()});
+  return value;
+}
+
+double FacetedSurface::condition(int condition, const Point3& x, Point3& gradient) {
+  Condition& c = smooth_[static_cast<std::size_t>(condition)];
+  if (c.count == 1) {
+    double value = 0;
+    c.evaluator->evaluate({.n = 1, .x = x.data(), .value = &value, .jacobian = gradient.data()});
+    return value;
+  }
+  Eigen::VectorXd values(c.count);
+  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(3, c.count);
+  c.evaluator->evaluate({.n = 1, .x = x.data(), .value = values.data(), .jacobian = gradients.data()});
+  gradient = gradients.col(c.component);
+  return values(c.component);
+}
+
+/// Newton's method with the shortest step, halved while the rows' scaled residual grows.
+bool FacetedSurface::project(int face, const std::vector<int>& conditions, Point3& x) {
+  const auto rows = static_cast<Index>(1 + conditions.size());
+  if (rows > 3) return false;
+  Eigen::Matrix<double, Eigen::Dynamic, 3, 0, 3, 3> jacobian(rows, 3);
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 3, 1> residual(rows);
+  const auto visit = [&](const Point3& at) {
+    Point3 gradient;
+    for (Index i = 0; i < rows; ++i) {
+      double value =
+          i == 0 ? function(face, at, gradient) : condition(conditions[static_cast<std::size_t>(i - 1)], at, gradient);
+      const double size = gradient.norm();
+      if (!(size > 1e-300) || !std::isfinite(value) || !std::isfinite(size)) return false;
+      residual(i) = value / size;
+      jacobian.row(i) = gradient.transpose() / size;
+    }
+    return true;
+  };
+  if (!visit(x)) return false;
+  constexpr int kMostSteps = 40;
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double before = residual.norm();
+    if (before == 0) return true;
+    Point3 change;
+    if (rows == 1) {
+      change = -jacobian.transpose() * residual;
+    } else if (rows == 2) {
+      const Point3 a = jacobian.row(0);
+      const Point3 b = jacobian.row(1);
+      const double cosine = a.dot(b);
+      const double det = 1 - cosine * cosine;
+      if (!(det > kParallel)) return false;
+      change = (a * (cosine * residual(1) - residual(0)) + b * (cosine * residual(0) - residual(1))) / det;
+    } else {
+      const Point3 a = jacobian.row(0);
+      const Point3 b = jacobian.row(1);
+      const Point3 c = jacobian.row(2);
+      const double det = a.dot(b.cross(c));
+      if (!(det * det > kParallel)) return false;
+      change = -(b.cross(c) * residual(0) + c.cross(a) * residual(1) + a.cross(b) * residual(2)) / det;
+    }
+    if (!change.allFinite()) return false;
+    const Point3 from = x;
+    double part = 1;
+    bool better = false;
+    for (int halving = 0; halving < 12; ++halving, part /= 2) {
+      x = from + part * change;
+      if (visit(x) && residual.norm() < before) {
+        better = true;
+        break;
+      }
+    }
+    if (!better) {
+      x = from;
+      return before <= 1e-11 * scale;
+    }
+    if (change.norm() <= 1e-15 * scale) return true;
+  }
+  return residual.norm() <= 1e-11 * scale;
+}
+
+Point3 FacetedSurface::tangent(int e, const Point3& x) {
+  const SharpEdge& edge = this->edge(e);
+  Point3 f;
+  Point3 c;
+  (void)function(edge.a, x, f);
+  (void)condition(edge.condition, x, c);
+  return f.normalized().cross(c.normalized()).normalized();
+}
+
+bool FacetedSurface::move(int e, double step, Point3& x) {
+  const SharpEdge edge = this->edge(e);
+  Point3 to = x + step * tangent(e, x);
+  if (!project(edge.a, {edge.condition}, to)) return false;
+  if ((to - x).norm() > 2 * std::abs(step) + 1e-12 * scale) return false;
+  x = to;
+  return true;
+}
+
+Point3 FacetedSurface::curvature(int e, const Point3& x) {
+  const double step = 1e-5 * scale;
+  Point3 ahead = x;
+  Point3 behind = x;
+  if (!move(e, step, ahead) || !move(e, -step, behind)) return Point3::Zero();
+  return (tangent(e, ahead) - tangent(e, behind)) / (2 * step);
+}
+
+int FacetedSurface::edge_of(int a, int b, int condition) {
+  if (b >= 0 && b < a) std::swap(a, b);
+  const auto [at, added] = edge_of_.try_emplace({a, b, condition}, 0);
+  if (added) {
+    at->second = static_cast<int>(edges_.size());
+    edges_.push_back({a, b, condition});
+  }
+  return at->second;
+}
+
+std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
+  Eigen::VectorXd value;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> gradient;
+  evaluate_conditions(x, value, &gradient);
+  std::vector<int> zero;
+  FormulaKinks::Sides sides(static_cast<std::size_t>(num_kinks_));
+  for (int i = 0; i < num_conditions(); ++i) {
+    if (i < num_kinks_) sides[static_cast<std::size_t>(i)] = value(i) >= 0 ? 1 : -1;
+    if (std::abs(value(i)) <= tolerance * gradient.col(i).norm()) {
+      zero.push_back(i);
+    } else if (i >= num_kinks_ && value(i) < 0) {
+      return std::nullopt;  // outside the domain
+    }
+  }
+  std::vector<int> flips;
+  for (const int i : zero) {
+    if (i < num_kinks_) flips.push_back(i);
+  }
+  if (flips.size() > kMostAtAPoint) return std::nullopt;
+
+  std::vector<Wedge> wedges;
+  for (std::size_t choice = 0; choice < (std::size_t{1} << flips.size()); ++choice) {
+    FormulaKinks::Sides other = sides;
+    for (std::size_t i = 0; i < flips.size(); ++i) {
+      other[static_cast<std::size_t>(flips[i])] = (choice >> i & 1) != 0 ? -1 : 1;
+    }
+    Wedge wedge;
+    wedge.face = face_of(other);
+    Point3 f;
+    const double off = function(wedge.face, x, f);
+    if (!(f.norm() > 0) || !f.allFinite()) return std::nullopt;
+    if (!(std::abs(off) <= 4 * tolerance * f.norm())) continue;
+    wedge.normal = f.normalized();
+    const Point3 e1 = wedge.normal.unitOrthogonal();
+    const Point3 e2 = wedge.normal.cross(e1);
+    double low = 0;
+    double width = kTwoPi;
+    bool empty = false;
+    for (const int z : zero) {
+      const int smooth = smooth_condition(z, other);
+      Point3 g;
+      (void)condition(smooth, x, g);
+      if (z < num_kinks_) g *= other[static_cast<std::size_t>(z)];
+      const double size = g.norm();
+      const Eigen::Vector2d flat(g.dot(e1), g.dot(e2));
+      if (size == 0) continue;
+      if (flat.norm() <= kTangential * size) return std::nullopt;
+      const double from = std::atan2(flat.y(), flat.x()) - std::numbers::pi / 2;
+      if (width == kTwoPi) {
+        low = from;
+        width = std::numbers::pi;
+        wedge.first_condition = wedge.second_condition = smooth;
+        continue;
+      }
+      double ahead = in_turn(from - low);  // where the new half circle begins, seen from the old arc
+      if (ahead > kTwoPi - kThinWedge) ahead -= kTwoPi;
+      if (std::abs(ahead) < kThinWedge) continue;
+      if (ahead < width) {  // begins inside: cut the front
+        low += ahead;
+        width -= ahead;
+        wedge.first_condition = smooth;
+      } else {  // ends inside: cut the back
+        const double end = ahead - std::numbers::pi;
+        if (end <= kThinWedge) {
+          empty = true;
+          break;
+        }
+        if (end < width) {
+          width = end;
+          wedge.second_condition = smooth;
+        }
+      }
+      if (width <= kThinWedge) {
+        empty = true;
+        break;
+      }
+    }
+    if (empty) continue;
+    wedge.angle = width;
+    if (width < kTwoPi) {
+      wedge.first = std::cos(low) * e1 + std::sin(low) * e2;
+      wedge.second = std::cos(low + width) * e1 + std::sin(low + width) * e2;
+    }
+    wedges.push_back(wedge);
+  }
+  if (wedges.empty()) return std::nullopt;
+
+  // The same wedge may be claimed by several choices, where a kink does not matter.
+  const auto meets = [](const Point3& a, const Point3& b) { return (a - b).norm() < kSameRay; };
+  Star star;
+  for (const Wedge& wedge : wedges) {
+    const bool known = std::any_of(star.wedges.begin(), star.wedges.end(), [&](const Wedge& other) {
+      return other.face == wedge.face &&
+             (wedge.angle == kTwoPi ? other.angle == kTwoPi
+                                    : meets(other.first, wedge.first) && meets(other.second, wedge.second));
+    });
+    if (!known) star.wedges.push_back(wedge);
+  }
+  // Wedges of one face that touch are one.
+  for (bool merged = true; merged;) {
+    merged = false;
+    for (std::size_t i = 0; i < star.wedges.size() && !merged; ++i) {
+      for (std::size_t j = 0; j < star.wedges.size() && !merged; ++j) {
+        Wedge& a = star.wedges[i];
+        const Wedge b = star.wedges[j];
+        if (i == j || a.face != b.face || a.angle == kTwoPi || b.angle == kTwoPi) continue;
+        if (!meets(a.second, b.first)) continue;
+        a.second = b.second;
+        a.second_condition = b.second_condition;
+        a.angle += b.angle;
+        if (meets(a.second, a.first) && a.angle > kTwoPi - 1e-4) a.angle = kTwoPi;
+        star.wedges.erase(star.wedges.begin() + static_cast<std::ptrdiff_t>(j));
+        merged = true;
+      }
+    }
+  }
+  if (star.wedges.size() == 1 && star.wedges.front().angle == kTwoPi) return star;
+  // Into a row, from border to border if there is one.
+  std::vector<Wedge> row;
+  std::vector<Wedge> left = std::move(star.wedges);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const bool has_before = std::any_of(left.begin(), left.end(), [&](const Wedge& other) {
+      return other.angle < kTwoPi && meets(other.second, left[i].first);
+    });
+    if (!has_before) {
+      begin = i;
+      star.closed = false;
+      break;
+    }
+  }
+  row.push_back(left[begin]);
+  left.erase(left.begin() + static_cast<std::ptrdiff_t>(begin));
+  while (true) {
+    const auto next = std::find_if(left.begin(), left.end(),
+                                   [&](const Wedge& wedge) { return meets(row.back().second, wedge.first); });
+    if (next == left.end()) break;
+    row.push_back(*next);
+    left.erase(next);
+  }
+  if (!left.empty()) return std::nullopt;  // several sheets touch
+  if (star.closed && !meets(row.back().second, row.front().first)) return std::nullopt;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const bool last = i + 1 == row.size();
+    Wedge& wedge = row[i];
+    if (last && !star.closed) {
+      wedge.second_edge = edge_of(wedge.face, -1, wedge.second_condition);
+    } else {
+      Wedge& next = row[last ? 0 : i + 1];
+      wedge.second_edge = edge_of(wedge.face, next.face, wedge.second_condition);
+      next.first_edge = wedge.second_edge;
+    }
+  }
+  if (!star.closed) row.front().first_edge = edge_of(row.front().face, -1, row.front().first_condition);
+  star.wedges = std::move(row);
+  return star;
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,51 @@
+// Paths along the border of a cut surface: tangents and arcs.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "taut/query/path.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace taut {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+PathResult path(const std::string& formula, const std::vector<std::string>& domain, const Eigen::Vector3d& p,
+                const Eigen::Vector3d& q) {
+  FormulaOptions options;
+  options.dim = 3;
+  options.domain = domain;
+  return shortest_path(parse_surface(formula, options), p, q);
+}
+
+TEST(Borders, PlaneWithAHole) {
+  const PathResult found = path("z=0", {"x^2+y^2>=1"}, {-2, 0, 0}, {2, 0, 0});
+  EXPECT_EQ(found.status, Status::ok) << found.message;
+  EXPECT_NEAR(found.length, 2 * std::sqrt(3.0) + kPi / 3, 1e-11);
+  EXPECT_FALSE(found.unique);  // on either side of the hole
+  ASSERT_EQ(found.pieces.size(), 3U);
+  EXPECT_EQ(found.pieces[1].kind, PathPiece::Kind::border);
+  EXPECT_NEAR(found.pieces[1].length, kPi / 3, 1e-10);
+}
+
+TEST(Borders, SphereBandAlongItsEdge) {
+  // Half way round at latitude 30 degrees, with everything above cut off: along the edge where it is pressed.
+  const double z = 0.5;
+  const double r = std::sqrt(3.0) / 2;
+  const PathResult found = path("x^2+y^2+z^2=1", {"z<=0.5", "z>=-0.2"}, {r, 0, z}, {-r, 0, z});
+  EXPECT_EQ(found.status, Status::ok) << found.message;
+  EXPECT_NEAR(found.length, kPi * r, 1e-10);
+}
+
+TEST(Borders, WhatIsNotTouchedChangesNothing) {
+  const PathResult free = path("x^2+y^2+z^2=1", {}, {1, 0, 0}, {0, 1, 0});
+  const PathResult cut = path("x^2+y^2+z^2=1", {"z>=-0.9"}, {1, 0, 0}, {0, 1, 0});
+  EXPECT_EQ(free.length, cut.length);
+  EXPECT_TRUE(cut.pieces.empty());
+}
+
+}  // namespace
+}  // namespace taut

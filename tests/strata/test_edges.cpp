@@ -1,0 +1,194 @@
+// Paths over edges against unfolded faces: lengths that a ruler gives.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "taut/query/path.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace taut {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+
+PathResult path(const std::string& formula, const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+  FormulaOptions options;
+  options.dim = 3;
+  return shortest_path(parse_surface(formula, options), p, q);
+}
+
+void expect_length(const PathResult& found, double length, double tolerance = 1e-12) {
+  EXPECT_EQ(found.status, Status::ok) << found.message;
+  EXPECT_EQ(found.message, "");
+  EXPECT_NEAR(found.length, length, tolerance * length);
+  EXPECT_LE(std::abs(found.length - length), found.length_error + 1e-13 * length);
+  EXPECT_TRUE(found.locally_shortest);
+}
+
+/// Least value of a function that falls, then rises.
+double least(const std::function<double(double)>& f, double a, double b) {
+  const double part = (std::sqrt(5.0) - 1) / 2;
+  for (int i = 0; i < 90; ++i) {
+    const double x = b - part * (b - a);
+    const double y = a + part * (b - a);
+    (f(x) < f(y) ? b : a) = f(x) < f(y) ? y : x;
+  }
+  return f((a + b) / 2);
+}
+
+const std::string kCan = "max(x^2+y^2-4, abs(z)-1)";
+
+TEST(Edges, CanOverTheLid) {
+  const PathResult found = path(kCan, {2, 0, 0.9}, {-2, 0, 0.9});
+  expect_length(found, 4.2);
+  EXPECT_TRUE(found.unique);
+  ASSERT_EQ(found.pieces.size(), 5U);
+  EXPECT_EQ(found.pieces[0].kind, PathPiece::Kind::face);
+  EXPECT_EQ(found.pieces[1].kind, PathPiece::Kind::crossing);
+  EXPECT_NEAR(found.pieces[1].left, kPi / 2, 1e-9);
+  EXPECT_NEAR(found.pieces[2].length, 4, 1e-11);
+}
+
+TEST(Edges, CanFromLidToSide) {
+  expect_length(path(kCan, {0.5, 0, 1}, {2, 0, 0}), 2.5);
+  for (const double angle : {0.4, 1.1, 1.9}) {
+    // Straight on the lid to the rim, then a helix.
+    const double want = least(
+        [&](double rim) {
+          const double lid = std::hypot(2 * std::cos(rim) - 0.5, 2 * std::sin(rim));
+          return lid + std::hypot(2 * (angle - rim), 0.7);
+        },
+        0, angle);
+    expect_length(path(kCan, {0.5, 0, 1}, {2 * std::cos(angle), 2 * std::sin(angle), 0.3}), want, 1e-11);
+  }
+}
+
+TEST(Edges, SpiderAndFlyInTheBox) {
+  // Dudeney's room: five of the six faces, 40 and not 42.
+  const PathResult found = path("max(abs(x)-15,abs(y)-6,abs(z)-6)", {-15, 0, 5}, {15, 0, -5});
+  expect_length(found, 40);
+  EXPECT_FALSE(found.unique);  // its mirror image is as short
+  int faces = 0;
+  for (const PathPiece& piece : found.pieces) faces += piece.kind == PathPiece::Kind::face ? 1 : 0;
+  EXPECT_EQ(faces, 5);
+}
+
+TEST(Edges, Cube) {
+  const std::string cube = "max(abs(x),abs(y),abs(z))-1";
+  expect_length(path(cube, {0.2, 0.3, 1}, {1, -0.4, 0.1}), std::hypot(0.8 + 0.9, 0.7));
+  const PathResult opposite = path(cube, {0, 0, 1}, {0, 0, -1});
+  expect_length(opposite, 4);
+  EXPECT_FALSE(opposite.unique);
+}
+
+TEST(Edges, RoofAndWedge) {
+  expect_length(path("z=abs(x)", {-1, 0, 1}, {1, 1, 1}), 3);
+  // Of any angle, both ways the same.
+  for (const double slope : {0.2, 1.0, 4.0}) {
+    const std::string wedge = "z+" + std::to_string(slope) + "*max(x,0)";
+    const double across = std::hypot(1, slope) * 0.8;
+    const PathResult found = path(wedge, {-0.5, 0, 0}, {0.8, 1.3, -0.8 * slope});
+    expect_length(found, std::hypot(0.5 + across, 1.3));
+    const PathResult back = path(wedge, {0.8, 1.3, -0.8 * slope}, {-0.5, 0, 0});
+    EXPECT_NEAR(back.length, found.length, 1e-13);
+  }
+}
+
+TEST(Edges, Staircase) { expect_length(path("min(z, max(x, z-1))", {2, 0, 0}, {-1, 1.5, 1}), std::hypot(4, 1.5)); }
+
+TEST(Edges, Lens) {
+  const double angle = 35 * kPi / 180;  // of the ends above the flat face's plane; the rim is at 30 degrees
+  const PathResult found =
+      path("max(x^2+y^2+z^2-1, 0.5-z)", {std::cos(angle), 0, std::sin(angle)}, {-std::cos(angle), 0, std::sin(angle)});
+  expect_length(found, 2 * 5 * kPi / 180 + std::sqrt(3.0), 1e-11);
+}
+
+TEST(Edges, HalfBar) {
+  // Flat below, round above: the flat strip and the cylinder unroll into one plane.
+  expect_length(path("max(x^2+z^2-1, -z)", {0.5, 0, 0}, {std::cos(1), 0.7, std::sin(1)}), std::hypot(0.5 + 1, 0.7));
+}
+
+TEST(Edges, ConeWithBase) {
+  // Slant sqrt(2): the cone unrolls to a sector with angles divided by sqrt(2).
+  const double angle = 0.8;
+  const double r = 0.6;
+  const double want = least(
+      [&](double rim) {
+        const double base = std::hypot(std::cos(rim) - 0.3, std::sin(rim));
+        const double slant = std::sqrt(2.0) * r;
+        const double turn = (angle - rim) / std::sqrt(2.0);
+        return base + std::sqrt(slant * slant + 2 - 2 * slant * std::sqrt(2.0) * std::cos(turn));
+      },
+      0, angle);
+  expect_length(path("max(sqrt(x^2+y^2)+z-1, -z)", {0.3, 0, 0}, {r * std::cos(angle), r * std::sin(angle), 1 - r}),
+                want, 1e-11);
+}
+
+TEST(Edges, CrossedCylinders) {
+  expect_length(path("max(x^2+y^2,x^2+z^2,y^2+z^2)=2", {1, 1, 0}, {0, 1, 1}), 1.5485624144820531, 1e-11);
+}
+
+TEST(Edges, Vault) {
+  // max(x^2+z^2, y^2+z^2) = 1: the cylinders meet where |x| = |y|. From one to the other over x = y.
+  const double a = 0.3;
+  const double b = 0.5;
+  // On x^2+z^2=1 with |y|<=|x|: p = (sin u, y, cos u).
+  const Eigen::Vector3d p(std::sin(0.9), a, std::cos(0.9));
+  const Eigen::Vector3d q(b, std::sin(0.8), std::cos(0.8));
+  const double want = least(
+      [&](double u) { return std::hypot(0.9 - u, a - std::sin(u)) + std::hypot(0.8 - u, b - std::sin(u)); }, 0.1, 1.4);
+  expect_length(path("max(x^2+z^2,y^2+z^2)=1", p, q), want, 1e-11);
+}
+
+TEST(Edges, Octahedron) {
+  const PathResult found = path("abs(x)+abs(y)+abs(z)=1", {1, 0, 0}, {-1, 0, 0});
+  expect_length(found, std::sqrt(6.0));
+  EXPECT_FALSE(found.unique);
+}
+
+TEST(Edges, CornersOfAngleAbovePi) {
+  // A box on the floor: round its foot, over two corners.
+  const PathResult found = path("min(z, max(abs(x)-1,abs(y)-1,z-1))", {-2, 0.1, 0}, {2, 0.1, 0});
+  expect_length(found, 2 * std::hypot(1, 0.9) + 2);
+  int corners = 0;
+  for (const PathPiece& piece : found.pieces) {
+    if (piece.kind != PathPiece::Kind::corner) continue;
+    ++corners;
+    EXPECT_GE(std::min(piece.left, piece.right), kPi - 1e-9);
+  }
+  EXPECT_EQ(corners, 2);
+}
+
+TEST(Edges, ArcAlongAnEdge) {
+  // A pillar on the floor: tangents and an arc of its foot.
+  const PathResult found = path("min(z, x^2+y^2-1)", {-2, 0.2, 0}, {2, 0.2, 0});
+  const double r = std::hypot(2, 0.2);
+  const double want = 2 * std::sqrt(r * r - 1) + (kPi - 2 * std::atan2(0.2, 2)) - 2 * std::acos(1 / r);
+  expect_length(found, want, 1e-11);
+}
+
+TEST(Edges, RoundedBox) {
+  // Smooth, but its curvature jumps: flat faces and quarter cylinders unroll into one plane.
+  const PathResult found =
+      path("sqrt(max(abs(x)-14.8,0)^2+max(abs(y)-5.8,0)^2+max(abs(z)-5.8,0)^2)=0.2", {-15, 0, 5}, {15, 0, -5});
+  expect_length(found, 39.75966076935517, 1e-12);
+}
+
+TEST(Edges, SymmetryAndTriangle) {
+  PathSolver solver(parse_surface(kCan));
+  const Eigen::Vector3d a(0.3, -0.4, 1);
+  const Eigen::Vector3d b(2 * std::cos(2.0), 2 * std::sin(2.0), -0.3);
+  const Eigen::Vector3d c(-0.8, 0.9, -1);
+  const double ab = solver.solve(a, b).length;
+  const double bc = solver.solve(b, c).length;
+  const double ac = solver.solve(a, c).length;
+  EXPECT_NEAR(solver.solve(b, a).length, ab, 1e-12);
+  EXPECT_LE(ac, ab + bc + 1e-12);
+  EXPECT_LE(ab, ac + bc + 1e-12);
+}
+
+}  // namespace
+}  // namespace taut
