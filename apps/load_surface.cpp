@@ -105,6 +105,15 @@ void SurfaceArguments::add_to(CLI::App& command) {
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
       ->allow_extra_args(false);
+  // After --domain, whose values the parser sets first.
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--obstacle",
+          [this](const std::vector<std::string>& obstacles) {
+            for (const std::string& expression : obstacles) domain.push_back("(" + expression + ") >= 0");
+          },
+          "keep out where this is negative, as in 'x^2+y^2-1': the same as --domain 'x^2+y^2-1 >= 0' (repeatable)")
+      ->allow_extra_args(false);
   command.add_option("--samples", samples,
                      "points on or near a formula's surface: what --grid grow starts from; in more than 6 dimensions, "
                      "what paths start from");

@@ -31,6 +31,8 @@ constexpr double kAllSlack = 3;
 /// A path is at least so many cells long, or the graph is made again around it.
 constexpr double kCellsAlong = 8;
 constexpr int kMostGraphs = 8;
+/// So many times as many cells where no way settled.
+constexpr double kFiner = 4;
 
 }  // namespace
 
@@ -42,23 +44,24 @@ FacetSearch::FacetSearch(const Surface& surface, const PathOptions& options, con
   surface_ = FacetedSurface::of(surface);
 }
 
-std::unique_ptr<FacetGraph> FacetSearch::graph(const Box& box) {
+std::unique_ptr<FacetGraph> FacetSearch::graph(const Box& box, double cells) {
   surface_->scale = box.diagonal();
   if (options_.cell > 0) return std::make_unique<FacetGraph>(*surface_, box, options_.cell, context_);
   const double side = box.extent().maxCoeff();
   const double first = side / kFirstCells;
   const Index coarse = subdivide(surface_->surface(), {.size = first, .box = box}, context_).num_cells();
-  const double size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / kCells));
+  const double size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
   return std::make_unique<FacetGraph>(*surface_, box, size, context_);
 }
 
 bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3& q, PathResult& result,
-                          std::vector<Found>& found) {
+                          std::vector<Found>& found, double& shortest_way) {
   Stopwatch watch;
   const double slack = options_.all ? kAllSlack : 1 + kWaySlack;
   const std::vector<FacetWay> ways = graph.ways(p, q, slack);
   result.seconds.march += watch.restart();
   found.clear();
+  shortest_way = ways.empty() ? 0 : ways.front().length;
   double best = std::numeric_limits<double>::infinity();
   double unsolved = best;
   std::string why;
@@ -81,9 +84,9 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.chain.length < b.chain.length; });
   result.message.clear();
+  result.marched = shortest_way;
   if (found.empty()) {
-    result.message = ways.empty() ? std::string("the two points are not joined by the faces that were found")
-                                  : fmt::format("the path over the edges of this surface was not found: {}", why);
+    if (!ways.empty()) result.message = fmt::format("the path over the edges of this surface was not found: {}", why);
     return false;
   }
   // Of a way that was not settled it is not known whether it is as short.
@@ -120,29 +123,33 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
   std::vector<Found> found;
   bool solved = false;
   double grown = apart;
+  double cells = kCells;
   for (int round = 0; round < kMostGraphs; ++round) {
     const Stopwatch watch;
     try {
       if (ends && round == 0) {
         surface_->scale = box.diagonal();
-        if (!whole_) whole_ = graph(box);
+        if (!whole_) whole_ = graph(box, cells);
         current = whole_.get();
       } else {
-        own = graph(box);
+        own = graph(box, cells);
         current = own.get();
       }
     } catch (const EmptySurface&) {
       current = nullptr;
     }
     result.seconds.cells += watch.seconds();
-    solved = current != nullptr && correct(*current, p, q, result, found);
+    double way = 0;
+    solved = current != nullptr && correct(*current, p, q, result, found, way);
+    if (!solved && way > 0) {
+      // There are ways, but none settled: on finer cells, around them.
+      if (cells > kCells) break;
+      cells *= kFiner;
+      box = intersection(box_of_shorter_paths(p, q, (1 + kWaySlack) * way), ends ? box : extent.whole);
+      continue;
+    }
     if (!solved) {
-      if (ends && round > 0) break;
-      if (ends) {  // once more around the ends
-        box = room(2 * apart);
-        if ((box.extent().array() >= 0.9 * extent.box.extent().array()).all()) break;
-        continue;
-      }
+      if (ends) break;
       grown *= 2;
       box = room(grown);
       continue;
@@ -152,12 +159,11 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     needed = intersection(needed, ends ? box : extent.whole);
     const bool holds = current->box().contains(needed.lower) && current->box().contains(needed.upper);
     const bool fine = current->size() <= length / kCellsAlong;
-    if (holds && fine) break;
+    if (holds && (fine || options_.cell > 0)) break;
     if (round + 1 == kMostGraphs) {
       result.message = "a shorter path may exist: it was not looked for everywhere";
       break;
     }
-    if (holds && options_.cell > 0) break;
     if (holds && needed.extent().maxCoeff() > 0.7 * current->box().extent().maxCoeff()) break;
     box = needed;
   }
@@ -166,7 +172,10 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     result.num_cells = current->num_cells();
     result.grid = GridMethod::subdivide;
   }
-  if (!solved) return result;
+  if (!solved) {
+    if (result.message.empty()) result.message = "the two points are not joined by the faces that were found";
+    return result;
+  }
   deliver(found, result);
   return result;
 }

@@ -32,10 +32,10 @@ class FacetSearch {
     FacetChain chain;
     FacetWay way;
   };
-  [[nodiscard]] std::unique_ptr<FacetGraph> graph(const Box& box);
+  [[nodiscard]] std::unique_ptr<FacetGraph> graph(const Box& box, double cells);
   /// Corrects the ways over the graph. True when some are solved.
   [[nodiscard]] bool correct(const FacetGraph& graph, const Point3& p, const Point3& q, PathResult& result,
-                             std::vector<Found>& found);
+                             std::vector<Found>& found, double& shortest_way);
   void deliver(const std::vector<Found>& found, PathResult& result) const;
 
   const PathOptions& options_;

@@ -151,7 +151,8 @@ PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& c
   };
   if (kinked) {
     std::optional<PathResult> found = over_faces();
-    if (found && found->status == Status::ok) return *std::move(found);
+    // There are ways, but none was made a geodesic: the search for smooth surfaces would not do better.
+    if (found && (found->status == Status::ok || found->marched > 0)) return *std::move(found);
     PathResult other = search.find(p, q, corrector);
     if (other.status == Status::ok && other.message.empty() && other.corrected) {
       other.message = found ? fmt::format("a shorter path may exist: {}", found->message)

@@ -39,8 +39,12 @@ constexpr double kAngleSlack = 1e-7;
 constexpr int kMostRounds = 60;
 constexpr int kMostSteps = 60;
 constexpr int kMostHalvings = 30;
+/// A stop moves by at most this part of the longer of its arcs, even where the other is short.
+constexpr double kBoldStep = 0.3;
 /// Arcs traced for one chain, in all; chains that settle take 10 to 100.
 constexpr int kMostTraced = 1000;
+/// Crossings moved to the other side of their edge in one chain, before the path is made to follow the edge.
+constexpr int kMostShifts = 4;
 
 /// Unit tangent of the curve element an arc leaves its stop with.
 Point3 across(const Point3& normal, const Point3& tangent) { return normal.cross(tangent); }
@@ -84,6 +88,7 @@ class Shortener {
   std::vector<int> end_condition_;
   double hessian_least_ = kFar;
   int num_traced_ = 0;
+  int num_shifted_ = 0;
 };
 
 bool Shortener::trace(ChainArc& arc, const Point3& a, const Point3& b) {
@@ -184,23 +189,23 @@ bool Shortener::trace_face(ChainArc& arc, const Point3& a, const Point3& b) {
 bool Shortener::trace_edge(ChainArc& arc, const Point3& a, const Point3& b) {
   const SharpEdge edge = s_.edge(arc.edge);
   std::vector<Point3> marks{a};
-  const Points start = arc.start;
-  for (Index i = 0; i < start.cols(); ++i) {
-    const Point3 x = start.col(i);
-    // Those that the ends have passed are left out.
+  // Marks that the ends have passed are left out.
+  const Points& start = arc.start;
+  const Index count = start.cols();
+  if (count > 1) {
     Point3 ta = s_.tangent(arc.edge, a);
     Point3 tb = s_.tangent(arc.edge, b);
-    const Point3 along = start.col(start.cols() - 1) - start.col(0);
-    const Point3 after = start.col(std::min(i + 1, start.cols() - 1)) - start.col(std::max<Index>(i - 1, 0));
-    if (ta.dot(start.cols() > 1 ? Point3(start.col(1) - start.col(0)) : along) < 0) ta = -ta;
-    if (tb.dot(start.cols() > 1 ? Point3(start.col(start.cols() - 1) - start.col(start.cols() - 2)) : along) < 0)
-      tb = -tb;
-    (void)after;
-    const double near_a = (x - a).norm();
-    const double near_b = (x - b).norm();
-    if (near_a < 0.5 * s_.scale && (x - a).dot(ta) <= 0.02 * near_a + together_ && i < start.cols() / 2) continue;
-    if (near_b < 0.5 * s_.scale && (b - x).dot(tb) <= 0.02 * near_b + together_ && i >= start.cols() / 2) continue;
-    marks.push_back(x);
+    if (ta.dot(Point3(start.col(1) - start.col(0))) < 0) ta = -ta;
+    if (tb.dot(Point3(start.col(count - 1) - start.col(count - 2))) < 0) tb = -tb;
+    constexpr double kAhead = 0.02;  // cosine
+    for (Index i = 0; i < count; ++i) {
+      const Point3 x = start.col(i);
+      const double from_a = (x - a).norm();
+      const double from_b = (x - b).norm();
+      if (i < count / 2 && (x - a).dot(ta) <= kAhead * from_a + together_) continue;
+      if (i >= count / 2 && (b - x).dot(tb) <= kAhead * from_b + together_) continue;
+      marks.push_back(x);
+    }
   }
   marks.push_back(b);
   // Abscissae and weights of Gauss's rule with 8 points on [0, 1].
@@ -266,7 +271,6 @@ bool Shortener::trace_edge(ChainArc& arc, const Point3& a, const Point3& b) {
   arc.points.resize(3, static_cast<Index>(line.size()));
   for (std::size_t i = 0; i < line.size(); ++i) arc.points.col(static_cast<Index>(i)) = line[i];
   if (line.size() < 2) arc.points = chord(a, b);
-  arc.start = arc.points;
   arc.first = s_.tangent(arc.edge, a);
   arc.last = s_.tangent(arc.edge, b);
   const Index m = arc.points.cols();
@@ -411,9 +415,9 @@ bool Shortener::slide() {
     for (Index i = 0; i < n; ++i) {
       const std::size_t at = moving[static_cast<std::size_t>(i)];
       double room = std::min(c_.arcs[at - 1].length, c_.arcs[at].length);
-      room = std::max(room, 1e-3 * std::max(c_.arcs[at - 1].length, c_.arcs[at].length));
+      room = std::max(room, kBoldStep * std::max(c_.arcs[at - 1].length, c_.arcs[at].length));
       if (c_.stops[at].kind == Kind::contact) {
-        room = 0.3 * std::max(c_.arcs[at - 1].length, c_.arcs[at].length);
+        room = kBoldStep * std::max(c_.arcs[at - 1].length, c_.arcs[at].length);
       }
       part = std::min(part, room / std::max(std::abs(step(i)), 1e-300));
     }
@@ -861,6 +865,35 @@ bool Shortener::stay_on_face(std::size_t i, bool& changed) {
   const SharpEdge over = s_.edge(edge);
   const int other = over.a == face ? over.b : over.a;
   const bool follows = other < 0 || pressed(edge, middle, b - a) <= 1e-9 / s_.scale;
+  const auto at = static_cast<std::ptrdiff_t>(i);
+  // Next to a crossing of the same edge, the path comes to the edge, or leaves it, on the face beyond.
+  const auto crosses = [&](std::size_t stop) {
+    return follows && c_.stops[stop].kind == Kind::crossing && c_.stops[stop].edge == edge;
+  };
+  const bool from_beyond = crosses(i);
+  const bool to_beyond = crosses(i + 1);
+  if ((from_beyond || to_beyond) && num_shifted_ < kMostShifts) {
+    // The arc came from, or went to, the wrong side of the edge: the crossing belongs where the arc first meets it.
+    ++num_shifted_;
+    const std::size_t stop = to_beyond ? i + 1 : i;
+    ChainArc& beyond = to_beyond ? c_.arcs[i + 1] : c_.arcs[i - 1];
+    Points joined(3, static_cast<Index>(marks.size()) + beyond.points.cols());
+    for (std::size_t k = 0; k < marks.size(); ++k) {
+      joined.col(to_beyond ? static_cast<Index>(k) : beyond.points.cols() + static_cast<Index>(k)) = marks[k];
+    }
+    if (to_beyond) {
+      joined.rightCols(beyond.points.cols()) = beyond.points;
+    } else {
+      joined.leftCols(beyond.points.cols()) = beyond.points;
+    }
+    beyond.start = without_repeats(joined);
+    beyond.done = false;
+    c_.stops[stop].x = to_beyond ? a : b;
+    arc.start = to_beyond ? chord(c_.stops[i].x, a) : chord(b, c_.stops[i + 1].x);
+    arc.done = false;
+    changed = true;
+    return true;
+  }
   ChainStop one;
   one.edge = edge;
   one.x = a;
@@ -883,10 +916,24 @@ bool Shortener::stay_on_face(std::size_t i, bool& changed) {
     between.face = other;
     between.start = chord(a, b);
   }
-  const auto at = static_cast<std::ptrdiff_t>(i);
-  c_.stops.insert(c_.stops.begin() + at + 1, {one, two});
-  c_.arcs[i] = std::move(before);
-  c_.arcs.insert(c_.arcs.begin() + at + 1, {std::move(between), std::move(after)});
+  std::vector<ChainStop> stops;
+  std::vector<ChainArc> arcs;
+  if (from_beyond) {
+    c_.stops[i].kind = Kind::contact;
+  } else {
+    stops.push_back(one);
+    arcs.push_back(std::move(before));
+  }
+  arcs.push_back(std::move(between));
+  if (to_beyond) {
+    c_.stops[i + 1].kind = Kind::contact;
+  } else {
+    stops.push_back(two);
+    arcs.push_back(std::move(after));
+  }
+  c_.stops.insert(c_.stops.begin() + at + 1, stops.begin(), stops.end());
+  c_.arcs.erase(c_.arcs.begin() + at);
+  c_.arcs.insert(c_.arcs.begin() + at, arcs.begin(), arcs.end());
   changed = true;
   return true;
 }
@@ -928,7 +975,16 @@ bool Shortener::change(bool& changed) {
     const bool backwards =
         c_.arcs[i - 1].last.dot(c_.arcs[i].first) < 0 && c_.arcs[i + 1].first.dot(c_.arcs[i].last) < 0;
     if (!backwards) continue;
-    return fail("an arc along an edge turns back");
+    const int face = c_.arcs[i - 1].face;
+    if (c_.arcs[i + 1].face != face || c_.stops[i].kind != Kind::contact || c_.stops[i + 1].kind != Kind::contact) {
+      return fail("an arc along an edge turns back");
+    }
+    c_.stops.erase(c_.stops.begin() + static_cast<std::ptrdiff_t>(i));
+    c_.arcs.erase(c_.arcs.begin() + static_cast<std::ptrdiff_t>(i));
+    c_.arcs[i - 1].points = chord(c_.stops[i - 1].x, c_.stops[i].x);
+    erase_stop(i, face);
+    changed = true;
+    return true;
   }
   for (std::size_t i = 0; i < c_.arcs.size(); ++i) {
     if (!stay_on_face(i, changed)) return false;
