@@ -15,6 +15,7 @@ nlohmann::ordered_json flow_json(const FlowSummary& summary) {
           {"error_sum", summary.error_sum},
           {"inserted", summary.num_inserted},
           {"inserted_in_plane", summary.num_plane_inserted},
+          {"inserted_across_cells", summary.num_across_cells},
           {"iterations", summary.num_iterations},
           {"evaluated", summary.num_evaluated},
           {"seconds", summary.seconds},

@@ -76,7 +76,7 @@ class PathScene {
       for (const PathResult* path : output_.sources[s].paths) add_path(*path, s);
     }
     add_ends();
-    if (output_.show.cells) add_cells();
+    if (output_.show.cells && !add_cells()) context.tell("no cells are shown: the paths were found without any");
     scene_.points.insert(scene_.points.end(), output_.marks.begin(), output_.marks.end());
     return std::move(scene_);
   }
@@ -101,8 +101,7 @@ class PathScene {
 
   void add_path(const PathResult& path, std::size_t source) {
     const bool failed = path.status != Status::ok;
-    const bool uncorrected = path.points.cols() == path.grid_path.cols() && path.points == path.grid_path;
-    const bool marched = output_.show.marched && path.grid_path.cols() > 1 && !uncorrected;
+    const bool marched = output_.show.marched && path.grid_path.cols() > 1 && path.corrected;
     const bool single = num_paths_ == 1;
     if (marched) {
       scene_.paths.push_back({.points = path.grid_path,
@@ -168,30 +167,26 @@ class PathScene {
     return nullptr;
   }
 
-  /// Those of all paths that walked on cells of the first one's size.
-  void add_cells() {
+  /// Those that a march has come to, of all paths that were found on cells of the first one's size. False: there are
+  /// none.
+  bool add_cells() {
     SceneCells cells{.centres = {}, .label = "cells walked"};
     std::set<std::vector<double>> centres;
     for (const SourcePaths& source : output_.sources) {
       for (const PathResult* path : source.paths) {
         if (cells.size == 0) cells.size = path->cell;
         if (path->cell != cells.size) continue;
-        const Points walked = walked_cells(*path);
-        for (const auto& centre : walked.colwise()) centres.emplace(centre.begin(), centre.end());
+        for (const auto& centre : path->walked_cells.colwise()) centres.emplace(centre.begin(), centre.end());
       }
     }
-    if (centres.empty()) return;
+    if (centres.empty()) return false;
     cells.centres.resize(output_.surface.dim(), static_cast<Index>(centres.size()));
     Index j = 0;
     for (const std::vector<double>& centre : centres) {
       cells.centres.col(j++) = Eigen::Map<const Vector>(centre.data(), static_cast<Index>(centre.size()));
     }
     scene_.cells = std::move(cells);
-  }
-
-  [[nodiscard]] Points walked_cells(const PathResult& path) const {
-    if (output_.surface.dim() > 6 || !(path.cell > 0)) return Points(output_.surface.dim(), 0);
-    return display_cells(output_.surface, {.cell = path.cell});
+    return true;
   }
 
   /// Of all paths.

@@ -211,7 +211,7 @@ void check_effects(const PathArguments& arguments, const CLI::App& command) {
   const PathOptions& options = arguments.options;
   check_envelope_usage(options.march, options.envelope);
   if (!arguments.start.empty() || !arguments.closed.empty()) {
-    refuse_without_effect(command, {"--march", "--envelope", "--grid", "--samples"},
+    refuse_without_effect(command, {"--march", "--envelope", "--grid", "--samples", "--show"},
                           "a polyline is shortened as it is, without a march");
   }
   if (options.method == CorrectionMethod::grid) {
@@ -251,6 +251,7 @@ ExitCode run(PathArguments arguments, const CLI::App& command) {
   check_effects(arguments, command);
   arguments.delivery.files.check(OutputKind::path);
   arguments.show.check(arguments.delivery.files);
+  arguments.options.keep_cells = arguments.show.cells;
   const std::vector<std::string>& out = arguments.delivery.files.out;
   if (pairs && (out.size() > 1 || (out.size() == 1 && !out.front().ends_with(".csv")))) {
     throw UsageError("--pairs writes lines: give one --out FILE.csv, or none for stdout");

@@ -10,6 +10,7 @@
 
 #include "batch_errors.hpp"
 #include "batch_output.hpp"
+#include "ignored_faces.hpp"
 #include "number_rows.hpp"
 #include "pairs_file.hpp"
 #include "report.hpp"
@@ -86,6 +87,7 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
   }
   PathSolver solver(surface, request.options, whole);
   if (found.corners.allFinite()) solver.expect(found.corners, found.count);
+  double shortest = std::numeric_limits<double>::infinity();
   Index size = kFirstChunk;
   using Clock = std::chrono::steady_clock;
   const std::string takes = fmt::format("a pair takes {}, p1,...,pd,q1,...,qd", 2 * d);
@@ -99,6 +101,7 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
       const PathResult& result = results[k];
       const std::string& problem = chunk.problems[k];
       lines += path_csv(result, problem, request.columns) + "\n";
+      if (result.length > 0) shortest = std::min(shortest, result.length);
       if (result.status != Status::ok) errors.tell(chunk.lines[k], problem.empty() ? result.message : problem);
     }
     output->write(lines);
@@ -108,6 +111,7 @@ ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const
     size = std::clamp(static_cast<Index>(fitting), Index{8}, std::min(kLargestChunk, 2 * size));
   }
   output->finish();
+  tell_of_ignored_faces(surface, shortest, context);
   return ok_before && !errors.any() ? kDone : kSomeLinesFailed;
 }
 

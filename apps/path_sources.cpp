@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <iostream>
 #include <limits>
 
@@ -60,15 +61,6 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
       csv += path_csv(result, problem, request.columns) + "\n";
     }
   }
-  if (delivery.json) {
-    std::cout << json.dump() << "\n";
-  } else {
-    std::cout << csv;
-  }
-  tell_of_ignored_faces(surface, shortest, context);
-  if (results.size() > 1)
-    context.tell(fmt::format("{} paths from {} sources in {:.3g} s", num_paths, results.size(), total));
-
   const PathOutput output{.surface = surface,
                           .sources = std::move(drawn),
                           .json = {},
@@ -79,7 +71,31 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
                           .show = request.show,
                           .field = field_options(request.options),
                           .evenly_spaced = request.samples_along};
-  write_paths(delivery.files, output, context);
+  // Pictures come first, so that their time is in the result; the result comes out even where they cannot be written.
+  std::exception_ptr trouble;
+  double all_seconds = total;
+  const Timer picture_timer;
+  try {
+    write_paths(delivery.files, output, context);
+  } catch (...) {
+    trouble = std::current_exception();
+  }
+  clear_progress();
+  if (delivery.files.has_picture()) {
+    const double seconds = picture_timer.seconds();
+    all_seconds += seconds;
+    for (auto& path : json) add_picture_seconds(seconds, path);
+  }
+  if (delivery.json) {
+    std::cout << json.dump() << "\n";
+  } else {
+    std::cout << csv;
+  }
+  tell_of_ignored_faces(surface, shortest, context);
+  if (results.size() > 1) {
+    context.tell(fmt::format("{} paths from {} sources in {:.3g} s", num_paths, results.size(), all_seconds));
+  }
+  if (trouble) std::rethrow_exception(trouble);
   write_json_files(delivery.files, json);
   return errors.any() ? kSomeLinesFailed : kDone;
 }

@@ -24,8 +24,8 @@ void add_legs(const ViaResult& path, Json& json) {
     Json entry = {{"status", to_string(leg.status)},
                   {"length", has_path ? number(leg.length) : Json(nullptr)},
                   {"length_error", has_path ? number(leg.length_error) : Json(nullptr)},
-                  {"converged", leg.status == Status::ok},
-                  {"locally_shortest", leg.locally_shortest},
+                  {"converged", leg.corrected ? Json(leg.status == Status::ok) : Json(nullptr)},
+                  {"locally_shortest", leg.corrected ? Json(leg.locally_shortest) : Json(nullptr)},
                   {"unique", leg.rivals_sought || !leg.unique ? nlohmann::json(leg.unique) : nlohmann::json(nullptr)}};
     if (!leg.message.empty()) entry["message"] = leg.message;
     json["legs"].push_back(std::move(entry));

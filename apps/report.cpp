@@ -151,7 +151,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   return json;
 }
 
-void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& facts) {
+void add_picture_seconds(double seconds, Json& json) {
   if (json.contains("seconds")) {
     Json& known = json["seconds"];
     if (known.is_object()) {
@@ -161,6 +161,10 @@ void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& fac
       known = known.get<double>() + seconds;  // of a command without stages
     }
   }
+}
+
+void add_picture_seconds(double seconds, Json& json, std::vector<SceneFact>& facts) {
+  add_picture_seconds(seconds, json);
   facts.push_back({"pictures", duration(seconds)});
 }
 
@@ -227,11 +231,12 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
   json["box"] = {{"lower", vector_json(summary.box.lower)}, {"upper", vector_json(summary.box.upper)}};
   json["cell"] = summary.cell;
   json["cells"] = summary.num_cells;
+  json["cells_complete"] = summary.counts.complete;
   json["grid"] = summary.num_cells > 0 ? Json(to_string(summary.grid)) : Json(nullptr);
   json["crossing_tests"] = summary.counts.num_tests;
   if (summary.num_layers > 0)
     json["envelope"] = {{"layers", summary.num_layers}, {"cells", summary.num_envelope_cells}};
-  json["components"] = summary.components;
+  json["components"] = summary.counts.complete ? Json(summary.components) : Json(nullptr);
   if (summary.shape) {
     json["area"] = number(summary.shape->area);
     json["euler"] = summary.shape->euler;
@@ -262,8 +267,13 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
   facts.push_back({"kind", summary.kind});
   facts.push_back({"space", fmt::format("{} dimensions, {} equation{}: a surface of dimension {}", summary.dim,
                                         summary.codim, summary.codim == 1 ? "" : "s", summary.dim - summary.codim)});
-  if (summary.dim <= 6) facts.push_back({"box", corner(summary.box.lower) + " to " + corner(summary.box.upper)});
-  if (summary.num_cells > 0) {
+  if (summary.box.dim() == summary.dim) {
+    facts.push_back({"box", corner(summary.box.lower) + " to " + corner(summary.box.upper)});
+  }
+  if (summary.num_cells > 0 && !summary.counts.complete) {
+    facts.push_back({"cells", "at least " + cells_text(summary.num_cells, summary.cell, 0) +
+                                  ", and no more were grown: take larger ones (--cell) to see all"});
+  } else if (summary.num_cells > 0) {
     facts.push_back({"cells", cells_text(summary.num_cells, summary.cell, 0)});
     if (summary.num_layers > 0) {
       facts.push_back({"envelope", cells_text(summary.num_envelope_cells, summary.cell, summary.num_layers)});
@@ -280,7 +290,8 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
     facts.push_back({"components", components});
     if (summary.shape) facts.push_back({"shape", shape_text(*summary.shape)});
   } else {
-    facts.push_back({"cells", "none: there would be too many in more than 6 dimensions"});
+    facts.push_back(
+        {"cells", "none: there would be too many in more than 6 dimensions (--grid grow grows some from --samples)"});
   }
   if (summary.num_samples > 0) {
     facts.push_back({"samples", grouped(summary.num_samples)});

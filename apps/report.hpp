@@ -23,7 +23,9 @@ namespace taut::app {
                                                 const PathOptions& options, double surface_seconds,
                                                 double total_seconds);
 
-/// Adds what pictures took to the seconds of a path's JSON, and to its facts.
+/// Adds what pictures took to the seconds of a path's JSON.
+void add_picture_seconds(double seconds, nlohmann::ordered_json& json);
+/// ... and to its facts.
 void add_picture_seconds(double seconds, nlohmann::ordered_json& json, std::vector<SceneFact>& facts);
 
 /// The facts as aligned lines.

@@ -48,10 +48,10 @@ class Growth {
 
   [[nodiscard]] bool empty() const { return num_crossed_ == 0; }
 
-  void run() {
+  void run(Index most_cells) {
     Cells neighbour(static_cast<std::size_t>(d_));
     std::vector<Index> front;
-    while (!front_.empty()) {
+    while (!front_.empty() && (most_cells == 0 || num_crossed_ < most_cells)) {
       front.clear();
       front.swap(front_);
       for (const Index i : front) {
@@ -73,7 +73,9 @@ class Growth {
   }
 
   /// Each cell ever looked at was tested once.
-  [[nodiscard]] CellCounts counts() const { return {.num_tests = tested_.num_cells(), .num_lookups = num_lookups_}; }
+  [[nodiscard]] CellCounts counts() const {
+    return {.num_tests = tested_.num_cells(), .num_lookups = num_lookups_, .complete = front_.empty()};
+  }
 
   [[nodiscard]] CellGrid crossed() const {
     CellGrid grid(tested_.origin(), tested_.size());
@@ -142,7 +144,7 @@ CellGrid grow(const Surface& surface, const PointsIn& seeds, const GrowOptions& 
     throw EmptySurface("no surface crosses the cells of size " + detail::describe(options.size) +
                        " that hold the seeds, such as " + detail::describe(seeds.col(0)));
   }
-  growth.run();
+  growth.run(options.most_cells);
   if (options.counts != nullptr) *options.counts = growth.counts();
   return growth.crossed().sorted();
 }

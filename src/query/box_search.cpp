@@ -94,7 +94,8 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     Starts starts;
     try {
       starts = level == 0 && first ? *std::move(first) : finder_.find(p, q, level);
-    } catch (const OutOfMemory&) {
+    } catch (const OutOfMemory& error) {
+      if (levels().lazy()) return walk_past_cells(std::move(result), p, q, corrector, error.what());
       if (level == 0) throw;
       break;
     }
@@ -202,6 +203,25 @@ PathResult BoxSearch::look_closer(PathResult found, Corrector& corrector) const 
   if (again.status != Status::ok || again.length > (1 + options_.tolerance) * found.length) return found;
   add_seconds(found, again);
   return again;
+}
+
+/// Where cells grow with the march, and there may be no more of them before it arrives: what walks come to. Without a
+/// curve, as not_converged, where they do not arrive either, or nothing is to be corrected.
+PathResult BoxSearch::walk_past_cells(PathResult so_far, const Vector& p, const Vector& q, Corrector& corrector,
+                                      std::string_view why) const {
+  so_far.cell = levels().size(0);
+  so_far.rivals_sought = false;
+  const Starts starts = finder_.walk(p, q);
+  so_far.seconds.march += starts.seconds.march;
+  if (starts.paths.empty() || options_.method == CorrectionMethod::grid) {
+    so_far.status = Status::not_converged;
+    so_far.message = why;
+    return so_far;
+  }
+  (void)corrector.correct(so_far, starts, true);
+  const std::string problem = so_far.status == Status::ok ? "a shorter path may exist" : so_far.message;
+  so_far.message = fmt::format("{} (found by walks: {})", problem, why);
+  return so_far;
 }
 
 /// For ends that no cells have joined: thin shells, of which a cell holds both sides. Without a curve where walks find

@@ -42,6 +42,8 @@ class BoxSearch {
   [[nodiscard]] int num_levels() const;
   [[nodiscard]] bool doubted(const PathResult& found, const Starts& starts, int level) const;
   [[nodiscard]] PathResult walk(const PathResult& so_far, const Vector& p, const Vector& q, Corrector& corrector) const;
+  [[nodiscard]] PathResult walk_past_cells(PathResult so_far, const Vector& p, const Vector& q, Corrector& corrector,
+                                           std::string_view why) const;
   [[nodiscard]] PathResult look_closer(PathResult found, Corrector& corrector) const;
 
   Surface surface_;

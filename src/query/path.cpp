@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -227,12 +228,26 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   shared.cells = watch.restart();
   const DistanceField field = impl.search.finder().march_all(ground, from);
   shared.march = watch.seconds();
+  // What was walked is the shared march's, which has come to all that hangs together: it is kept once.
+  std::mutex keeping;
+  Points walked;
+  const auto starts_to = [&](const Vector& to) {
+    detail::Starts starts = impl.search.finder().continue_to(ground, field, to);
+    const std::lock_guard lock(keeping);
+    if (walked.cols() == 0) walked = starts.walked;
+    starts.walked.resize(0, 0);
+    return starts;
+  };
   // Lazy cells grow while they are marched on: one at a time.
   std::vector<PathResult> results =
       impl.for_all(targets.cols(), !ground.cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
         const Vector to = target(j);
-        return impl.search.find(from, to, corrector, impl.search.finder().continue_to(ground, field, to));
+        return impl.search.find(from, to, corrector, starts_to(to));
       });
+  const auto on_shared_cells = std::ranges::find_if(results, [&](const PathResult& result) {
+    return result.grid_path.cols() > 0 && result.cell == ground.cells->grid().size();
+  });
+  if (on_shared_cells != results.end()) on_shared_cells->walked_cells = std::move(walked);
   if (!results.empty()) {
     results.front().seconds.cells += shared.cells;
     results.front().seconds.march += shared.march;

@@ -98,19 +98,4 @@ CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& option
   return curve;
 }
 
-Points display_cells(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
-  detail::CellLevels levels(surface, {options.grid, options.cell, options.seeds}, context);
-  if (!levels.exist() || levels.lazy()) {
-    throw InvalidArgument("cells are made in up to 6 dimensions, not in " + std::to_string(surface.dim()));
-  }
-  levels.prepare(Points(surface.dim(), 0));
-  const std::shared_ptr<SurfaceCells> cells = levels.cells(0, Points(surface.dim(), 0));
-  Points centres(surface.dim(), cells->num_valid());
-  Index count = 0;
-  for (Index i = 0; i < cells->num_cells(); ++i) {
-    if (cells->valid(i)) centres.col(count++) = cells->grid().centre(i);
-  }
-  return centres;
-}
-
 }  // namespace taut

@@ -8,6 +8,7 @@
 
 #include "query/cell_levels.hpp"
 #include "taut/cells/components.hpp"
+#include "taut/cells/grow.hpp"
 #include "taut/cells/mesh_surface.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/diagnose.hpp"
@@ -65,6 +66,39 @@ SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, const Contex
   return shape;
 }
 
+/// In more than 6 dimensions Algorithm II grows no more cells than so many, 20 us each in 7 dimensions.
+constexpr Index kMostGrownCells = 200'000;
+
+/// Sizes of the components of these cells, largest first.
+std::vector<Index> component_sizes(const Components& found) {
+  std::vector<Index> sizes(static_cast<std::size_t>(found.count), 0);
+  for (const std::int32_t label : found.label) ++sizes[static_cast<std::size_t>(label)];
+  std::ranges::sort(sizes, std::greater<>());
+  return sizes;
+}
+
+/// Where there are too many cells to make all of them: those that grow from the surface's samples, or from seeds.
+void grow_patches(const Surface& surface, const SummaryOptions& options, detail::CellLevels& levels,
+                  SurfaceSummary& summary, const Context& context) {
+  const bool sampled = surface.samples() != nullptr && surface.samples()->size() > 0;
+  const Points& seeds = sampled ? surface.samples()->points : options.seeds;
+  if (seeds.cols() == 0) {
+    throw InvalidArgument("Algorithm II grows cells from points of the surface: give it some (--samples FILE)");
+  }
+  levels.prepare(seeds);
+  const CellGrid grid =
+      grow(surface, seeds,
+           {.size = levels.size(0), .origin = {}, .counts = &summary.counts, .most_cells = kMostGrownCells}, context);
+  const Eigen::Map<const Eigen::MatrixX<std::int32_t>> cells(grid.coordinates().data(), grid.dim(), grid.num_cells());
+  const Vector first = cells.rowwise().minCoeff().cast<double>();
+  const Vector last = cells.rowwise().maxCoeff().cast<double>();
+  summary.box = {grid.origin() + grid.size() * first, grid.origin() + grid.size() * (last.array() + 1).matrix()};
+  summary.cell = grid.size();
+  summary.num_cells = grid.num_cells();
+  summary.grid = GridMethod::grow;
+  if (summary.counts.complete) summary.components = component_sizes(components_across_faces(grid));
+}
+
 /// Why there is nothing to be seen, where the equations are the reason.
 void throw_if_rank_deficient(const Surface& surface, const detail::CellLevels& levels) {
   constexpr double kReach = 2;  // without a box: where most formulas have their surface
@@ -80,14 +114,18 @@ void throw_if_rank_deficient(const Surface& surface, const detail::CellLevels& l
 
 SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, const Context& context) {
   detail::CellLevels levels(surface, {options.grid, options.cell, options.seeds}, context);
-  if (levels.lazy()) {
-    throw InvalidArgument("in more than 6 dimensions cells grow only where a march goes: there are none to look at");
+  if (surface.dim() > detail::CellLevels::kMostDimensions &&
+      (options.envelope != 0 || (options.cell > 0 && !levels.lazy()))) {
+    throw InvalidArgument(
+        "in more than 6 dimensions there are only cells that grow from samples (GridMethod::grow), and no envelope");
   }
   SurfaceSummary summary;
   summary.kind = surface.kind();
   summary.dim = surface.dim();
   summary.codim = surface.codim();
-  if (levels.exist()) {
+  if (levels.lazy()) {
+    grow_patches(surface, options, levels, summary, context);
+  } else if (levels.exist()) {
     try {
       const Points nowhere(surface.dim(), 0);
       levels.prepare(nowhere);
@@ -103,10 +141,7 @@ SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, 
         summary.num_envelope_cells = envelope->num_cells();
       }
       if (surface.dim() == 3 && surface.codim() == 1) summary.shape = shape_of(surface, cells->grid(), context);
-      const Components found = components(cells->grid());
-      summary.components.assign(static_cast<std::size_t>(found.count), 0);
-      for (const std::int32_t label : found.label) ++summary.components[static_cast<std::size_t>(label)];
-      std::ranges::sort(summary.components, std::greater<>());
+      summary.components = component_sizes(components(cells->grid()));
     } catch (const EmptySurface&) {
       throw_if_rank_deficient(surface, levels);
       throw;

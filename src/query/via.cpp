@@ -17,19 +17,35 @@ int severity(Status status) {
   return status == Status::disconnected ? 2 : 1;
 }
 
-/// The legs' points in a row, without the joints' second copies.
-Points joined(const std::vector<PathResult>& legs) {
+/// All columns in a row; those without columns may have no rows either.
+Points in_a_row(const std::vector<const Points*>& parts, Index dim) {
   Index count = 0;
-  for (const PathResult& leg : legs) count += leg.points.cols();
-  Points all(legs.front().from.size(), count);
+  for (const Points* part : parts) count += part->cols();
+  Points all(dim, count);
   Index next = 0;
-  for (const PathResult& leg : legs) {
-    all.middleCols(next, leg.points.cols()) = leg.points;
-    next += leg.points.cols();
+  for (const Points* part : parts) {
+    if (part->cols() > 0) all.middleCols(next, part->cols()) = *part;
+    next += part->cols();
   }
-  Points points = detail::without_repeats(all);
+  return all;
+}
+
+/// The legs' points in a row, without the joints' second copies.
+Points joined(const std::vector<PathResult>& legs, Points PathResult::*points_of) {
+  std::vector<const Points*> parts;
+  for (const PathResult& leg : legs) parts.push_back(&(leg.*points_of));
+  Points points = detail::without_repeats(in_a_row(parts, legs.front().from.size()));
   if (points.cols() == 1) points = points.replicate(1, 2).eval();  // all points the same: a path of that point
   return points;
+}
+
+/// Of the legs that were found on cells of this size.
+Points walked_cells(const std::vector<PathResult>& legs, double cell) {
+  std::vector<const Points*> parts;
+  for (const PathResult& leg : legs) {
+    if (leg.cell == cell) parts.push_back(&leg.walked_cells);
+  }
+  return in_a_row(parts, legs.front().from.size());
 }
 
 std::string leg_text(std::size_t leg, std::size_t num_legs, const std::string& problem) {
@@ -62,6 +78,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
   whole.status = Status::ok;
   whole.locally_shortest = true;
   whole.index = 0;
+  whole.marched = 0;
   bool complete = true;
   for (std::size_t i = 0; i < num_legs; ++i) {
     const PathResult& leg = whole.legs[i];
@@ -79,14 +96,20 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.residual.surface = std::max(whole.residual.surface, leg.residual.surface);
     whole.residual.geodesic_curvature = std::max(whole.residual.geodesic_curvature, leg.residual.geodesic_curvature);
     whole.num_iterations += leg.num_iterations;
+    whole.corrected = whole.corrected && leg.corrected;
+    whole.marched += leg.marched;
     whole.cell = std::max(whole.cell, leg.cell);
     whole.num_cells = std::max(whole.num_cells, leg.num_cells);
+    whole.num_layers = std::max(whole.num_layers, leg.num_layers);
+    if (leg.grid != GridMethod::automatic) whole.grid = leg.grid;
     whole.seconds.cells += leg.seconds.cells;
     whole.seconds.march += leg.seconds.march;
     whole.seconds.correct += leg.seconds.correct;
   }
   if (complete) {
-    whole.points = joined(whole.legs);
+    whole.points = joined(whole.legs, &PathResult::points);
+    whole.grid_path = joined(whole.legs, &PathResult::grid_path);
+    whole.walked_cells = walked_cells(whole.legs, whole.cell);
   } else {
     whole.length = 0;
     whole.length_error = 0;

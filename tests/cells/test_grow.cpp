@@ -130,6 +130,34 @@ TEST(Grow, CountsItsWork) {
   }
 }
 
+TEST(Grow, StopsAtItsBudgetAndSaysSo) {
+  const Surface sphere = test::bounded_sphere(Vector::Zero(3), 1);
+  CellCounts counts;
+  const Index all = grow(sphere, Vector::Unit(3, 0), {.size = 0.05, .counts = &counts}).num_cells();
+  EXPECT_TRUE(counts.complete);
+  const Index some = grow(sphere, Vector::Unit(3, 0), {.size = 0.05, .counts = &counts, .most_cells = 500}).num_cells();
+  EXPECT_FALSE(counts.complete);
+  EXPECT_GE(some, 500);
+  EXPECT_LT(some, 700) << "the front at hand is finished, no more";
+  (void)grow(sphere, Vector::Unit(3, 0), {.size = 0.05, .counts = &counts, .most_cells = all + 1});
+  EXPECT_TRUE(counts.complete);
+}
+
+TEST(Components, AcrossFacesCornersDoNotCount) {
+  CellGrid grid(Vector::Zero(9), 1);  // more dimensions than have lists of all neighbours
+  std::vector<std::int32_t> cell(9, 0);
+  grid.insert(cell);
+  cell[3] = 1;
+  grid.insert(cell);
+  cell[4] = -1;
+  grid.insert(cell);
+  for (auto& c : cell) ++c;  // touches the last one in a corner
+  grid.insert(cell);
+  const Components parts = components_across_faces(grid);
+  EXPECT_EQ(parts.count, 2);
+  EXPECT_EQ(parts.label, (std::vector<std::int32_t>{0, 0, 0, 1}));
+}
+
 TEST(Components, AlikeForCellsThatTouchInACorner) {
   CellGrid grid(Vector::Zero(3), 1);
   for (std::int32_t c = 0; c < 4; ++c) grid.insert(std::vector<std::int32_t>{c, -c, c});

@@ -7,14 +7,27 @@
 namespace taut::test {
 namespace {
 
+const char* const kCube =
+    "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
 TEST(IgnoredFaces, OfACubeAreToldOf) {
   const TempFolder folder;
-  const auto cube = folder.write("cube.obj",
-                                 "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-                                 "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-  const ProgramResult result = run_taut({"path", cube.string(), "--from", "@0", "--to", "@6"});
+  const std::string cube = folder.write("cube.obj", kCube).string();
+  const ProgramResult result = run_taut({"path", cube, "--from", "@0", "--to", "@6"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_NE(result.err.find("faces are ignored"), std::string::npos) << result.err;
+}
+
+TEST(IgnoredFaces, AreToldOfOnceForManyPairs) {
+  const TempFolder folder;
+  const std::string cube = folder.write("cube.obj", kCube).string();
+  const std::string pairs = folder.write("pairs.csv", "-1,-1,-1,1,1,1\n-1,-1,1,1,1,-1\n").string();
+  const ProgramResult result = run_taut({"path", cube, "--pairs", pairs});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const auto at = result.err.find("faces are ignored");
+  ASSERT_NE(at, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("faces are ignored", at + 1), std::string::npos) << result.err;
 }
 
 TEST(IgnoredFaces, OfAFineMeshAreNotWorthAWord) {

@@ -33,6 +33,19 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
+/// As the legend of a picture counts them; 0 = it names none.
+int cells_shown(const std::string& svg) {
+  const std::string label = ">cells walked, ";
+  const auto at = svg.find(label);
+  if (at == std::string::npos) return 0;
+  std::string number;
+  for (const char c : svg.substr(at + label.size(), 12)) {
+    if (c == '<' || c == ' ') break;
+    if (c != ',') number += c;
+  }
+  return std::stoi(number);
+}
+
 /// The text of the picture that a path command writes with these options.
 std::string picture_of(std::vector<std::string> arguments, const std::string& extension = ".svg") {
   const TempFolder folder;
@@ -96,6 +109,27 @@ TEST_F(PathSources, AreDrawnOverTheirField) {
   EXPECT_GE(occurrences(svg, "stroke=\"#1f77c9\""), 1);
 }
 
+TEST_F(PathSources, CountTheirPicturesInEveryObject) {
+  const std::string file = (folder_.path() / "a.svg").string();
+  const ProgramResult result =
+      run_taut({"path", kSphere, "--from", "1,0,0", "--from", "0,0,1", "--to-file", ends_, "--json", "--out", file});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json paths = json::parse(result.out);
+  ASSERT_EQ(paths.size(), 6U);
+  for (const json& path : paths) {
+    EXPECT_GT(path["seconds"]["pictures"], 0);
+    EXPECT_GE(path["seconds"]["total"], path["seconds"]["pictures"]);
+    EXPECT_EQ(path["seconds"]["pictures"], paths[0]["seconds"]["pictures"]);
+  }
+}
+
+TEST_F(PathSources, ShowTheCellsOfTheirSharedMarch) {
+  const std::string svg = picture_of({"path", kSphere, "--from", "1,0,0", "--to-file", ends_, "--cell", "0.2",
+                                      "--method", "grid", "--march", "axis", "--show", "cells"});
+  const ProgramResult info = run_taut({"info", kSphere, "--cell", "0.2", "--json"});
+  EXPECT_EQ(cells_shown(svg), json::parse(info.out)["cells"].get<int>()) << "the whole sphere was marched over";
+}
+
 TEST_F(PathSources, NeedAFileOfEnds) {
   const ProgramResult result = run_taut({"path", kSphere, "--from", "1,0,0", "--from", "0,1,0", "--to", "0,0,1"});
   EXPECT_EQ(result.exit_code, 2);
@@ -135,6 +169,42 @@ TEST(PathPictures, ShowCellsMarchedAndCorrectedPathTogether) {
   EXPECT_EQ(occurrences(svg, ">cells walked, "), 1);
   EXPECT_GE(occurrences(svg, "stroke=\"#d7301f\""), 2);
   EXPECT_GE(occurrences(svg, "stroke=\"#1f5fbf\""), 2);
+}
+
+// Two spheres, of which the march sees one; and a march that stops at its goal has not been round it either.
+TEST(PathPictures, TheCellsShownAreThoseThatWereWalked) {
+  const std::string spheres = "(x^2+y^2+z^2-1)*((x-4)^2+y^2+z^2-1)=0";
+  const TempFolder folder;
+  const std::string file = (folder.path() / "cells.svg").string();
+  const auto count = [&](const std::string& to, const std::vector<std::string>& options) {
+    std::vector<std::string> words = {"path",   spheres, "--from", "1,0,0", "--to", to,        "--cell", "0.2",
+                                      "--show", "cells", "--json", "--out", file,   "--march", "axis"};
+    words.insert(words.end(), options.begin(), options.end());
+    const ProgramResult result = run_taut(words);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return std::pair{cells_shown(file_bytes(file)), json::parse(result.out)["cells"].get<int>()};
+  };
+  const auto [far, all] = count("-1,0,0", {});
+  EXPECT_NEAR(far, all / 2, 0.1 * all) << "the other sphere was not walked";
+  const auto [near, all_again] = count("0.8,0.6,0", {});
+  EXPECT_EQ(all_again, all);
+  EXPECT_GT(near, 10);
+  EXPECT_LT(near, 0.5 * far);
+  const auto [grown, one] = count("-1,0,0", {"--grid", "grow"});
+  EXPECT_LE(grown, one);
+  EXPECT_NEAR(grown, far, 0.1 * far);
+  const auto [thick, envelope] = count("0.8,0.6,0", {"--envelope", "2"});
+  EXPECT_GT(thick, near);
+  EXPECT_LT(thick, envelope);
+}
+
+TEST(PathPictures, SayThatThereWereNoCells) {
+  const TempFolder folder;
+  const std::string file = (folder.path() / "seven.svg").string();
+  const ProgramResult result = run_taut({"path", "x1^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2=1", "--from", "1,0,0,0,0,0,0",
+                                         "--to", "0,1,0,0,0,0,0", "--show", "cells", "--out", file});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("no cells are shown"));
 }
 
 TEST(PathPictures, ShowAllWays) {

@@ -49,6 +49,25 @@ Surface chain() {
   return parse_surface(text + "x13^2+x14^2+x15^2=9");
 }
 
+// Cells that grow with the march until the memory allowed is used up: the walks' path, and why it is theirs.
+TEST(ManyDimensions, WhereNoMoreCellsMayGrowTheWalksPathIsGiven) {
+  const Surface sphere = parse_surface("x1^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2=1");
+  const Vector p = Vector::Unit(7, 0);
+  const Vector q = 0.6 * Vector::Unit(7, 1) - 0.8 * Vector::Unit(7, 4);
+  const Context context{.memory_limit = 2'000'000};
+  PathOptions options{.march = MarchMethod::axis, .grid = GridMethod::grow, .cell = 0.25};
+  const PathResult path = shortest_path(sphere, p, q, options, context);
+  EXPECT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, pi / 2, 1e-8);
+  EXPECT_FALSE(path.rivals_sought);
+  EXPECT_NE(path.message.find("found by walks"), std::string::npos) << path.message;
+  options.method = CorrectionMethod::grid;
+  const PathResult none = shortest_path(sphere, p, q, options, context);
+  EXPECT_EQ(none.status, Status::not_converged);
+  EXPECT_FALSE(none.message.empty());
+  EXPECT_EQ(none.points.cols(), 0);
+}
+
 TEST(ManyDimensions, RotationsUpToTheCutLocusHaveTheBiInvariantDistance) {
   PathSolver solver(orthogonal_matrices());
   std::mt19937_64 random(5);

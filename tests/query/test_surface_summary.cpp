@@ -52,6 +52,27 @@ TEST(SurfaceSummary, CountsTwoSpheres) {
   EXPECT_EQ(summarise(two).components.size(), 2U);
 }
 
+TEST(SurfaceSummary, AboveSixDimensionsPatchesGrowFromSamples) {
+  // Two spheres in R^7, seeds on one or on both of them.
+  const Surface two =
+      parse_surface("(x1^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2-1)*((x1-5)^2+x2^2+x3^2+x4^2+x5^2+x6^2+x7^2-1)=0");
+  SummaryOptions options{.cell = 0.9, .grid = GridMethod::grow, .seeds = Vector::Unit(7, 1)};
+  const SurfaceSummary one = summarise(two, options);
+  EXPECT_TRUE(one.counts.complete);
+  EXPECT_EQ(one.components, std::vector<Index>{one.num_cells});
+  EXPECT_EQ(one.counts.num_lookups, 14 * one.num_cells);
+  EXPECT_LT(one.box.upper(0), 2);
+  EXPECT_GE(one.box.upper(3), 1);
+  options.seeds.resize(7, 2);
+  options.seeds << Vector::Unit(7, 1), 6 * Vector::Unit(7, 0);
+  const SurfaceSummary both = summarise(two, options);
+  ASSERT_EQ(both.components.size(), 2U);
+  EXPECT_GE(both.box.upper(0), 6);
+  options.seeds.resize(7, 0);
+  EXPECT_THROW((void)summarise(two, options), InvalidArgument);
+  EXPECT_THROW((void)summarise(two, {.cell = 0.9}), InvalidArgument) << "there are no cells to be of that size";
+}
+
 TEST(SurfaceSummary, AnEmptySurfaceIsSaid) {
   EXPECT_THROW((void)summarise(parse_surface("x^2+y^2+z^2+1=0")), EmptySurface);
 }

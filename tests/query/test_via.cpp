@@ -53,6 +53,20 @@ TEST(Via, EachLegIsTheGloballyShortest) {
   EXPECT_EQ(path.from, path.to);
 }
 
+TEST(Via, WhatWasMarchedIsToldOfAllLegs) {
+  PathSolver solver(test::unit_sphere(3), {.method = CorrectionMethod::grid, .cell = 0.2, .keep_cells = true});
+  Points points(3, 3);
+  points << 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  const ViaResult path = path_through(solver, points);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_FALSE(path.corrected);
+  EXPECT_EQ(path.marched, path.legs[0].marched + path.legs[1].marched);
+  EXPECT_EQ(path.grid, GridMethod::subdivide);
+  EXPECT_EQ(path.grid_path.cols(), path.legs[0].grid_path.cols() + path.legs[1].grid_path.cols() - 1);
+  EXPECT_GT(path.walked_cells.cols(), 20);
+  EXPECT_EQ(path.walked_cells.cols(), path.legs[0].walked_cells.cols() + path.legs[1].walked_cells.cols());
+}
+
 TEST(Via, OneLegIsThePathItself) {
   const Surface surface = test::ellipsoid(1, 0.8, 0.5);
   PathSolver solver(surface);

@@ -8,6 +8,7 @@ namespace taut {
 struct CellCounts {
   Index num_tests = 0;    ///< crossing tests, of cells of all sizes
   Index num_lookups = 0;  ///< Algorithm II: neighbours looked up among the cells seen so far, 2 d a cell of the patch
+  bool complete = true;   ///< false: Algorithm II stopped at GrowOptions::most_cells
 };
 
 }  // namespace taut

@@ -21,6 +21,9 @@ struct Components {
 /// closed cells that touch. The same label proves nothing.
 [[nodiscard]] Components components(const CellGrid& grid);
 
+/// Of all cells, hanging together across faces alone (2 d neighbours, in any dimension): what Algorithm II joins.
+[[nodiscard]] Components components_across_faces(const CellGrid& grid);
+
 /// Of the cells that marching may walk on: invalid ones are left out.
 [[nodiscard]] Components components(const SurfaceCells& cells);
 

@@ -17,6 +17,8 @@ struct GrowOptions {
   std::optional<Vector> origin = std::nullopt;
   /// Where to count the work; null = nowhere.
   CellCounts* counts = nullptr;
+  /// With that many crossed cells, growth stops after the front at hand; 0 = never.
+  Index most_cells = 0;
 };
 
 /// Algorithm II of the paper (sec. 3.1): the cells that hold a seed and are crossed (CrossingTest), and all crossed

@@ -27,8 +27,4 @@ struct DisplayMeshOptions {
 [[nodiscard]] CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& options = {},
                                       const Context& context = {});
 
-/// Centres (d x n) of the cells that the surface goes through, for pictures; d at most 6. Throws as `PathSolver` does.
-[[nodiscard]] Points display_cells(const Surface& surface, const DisplayMeshOptions& options = {},
-                                   const Context& context = {});
-
 }  // namespace taut

@@ -34,7 +34,8 @@ struct SurfaceSummary {
   std::string kind;  ///< "formula", "rbf", "callback"
   Index dim = 0;
   Index codim = 0;
-  // In more than 6 dimensions there are no cells: then these stay empty.
+  // In more than 6 dimensions there are no cells, and these stay empty, but for those that Algorithm II grows from
+  // samples (grid = grow): up to some number, at which counts.complete is false and components are not known.
   Box box;                                  ///< the cells' box: where the surface was found
   double cell = 0;                          ///< h, model units
   Index num_cells = 0;                      ///< that the surface may cross
