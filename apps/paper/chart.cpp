@@ -76,7 +76,7 @@ class Scale {
       for (int digit = 1; digit < 10; ++digit) {
         const double at = (k + std::log10(digit) - lower_) / decades_shown;
         if (at < 0 || at > 1) continue;
-        const bool named = digit == 1 ? k % every == 0 : decades_shown < 1.5 && (digit == 2 || digit == 5);
+        const bool named = digit == 1 ? k % every == 0 : decades_shown < 2 && (digit == 2 || digit == 5);
         if (!named && decades_shown > 8) continue;
         ticks.push_back({at, named ? tick_text(k, digit) : ""});
       }
@@ -130,7 +130,16 @@ class ChartPainter {
   Drawing draw() {
     frame();
     for (const Series& series : chart_.series) curve(series);
-    legend();
+    if (chart_.legend_above) {
+      legend_rows();
+    } else if (!legend_in_a_corner()) {
+      // The curves leave no corner free: once more, lower, with the legend above.
+      drawing_.shapes.clear();
+      top_ += kLegendRow * num_legend_rows();
+      frame();
+      for (const Series& series : chart_.series) curve(series);
+      legend_rows();
+    }
     return std::move(drawing_);
   }
 
@@ -191,16 +200,35 @@ class ChartPainter {
     }
   }
 
-  /// One row over the frame.
-  void legend_row() {
+  /// Calls entry(series, place) for each name, in rows over the frame from `y` down.
+  template <class Entry>
+  void for_each_in_rows(double y, const Entry& entry) const {
     double x = kLeft;
-    const double y = top_ - 14;
     for (const Series& series : chart_.series) {
       if (series.name.empty()) continue;
-      mark(series, {x, y - 4.5});
-      drawing_.add(TextLine{.at = {x + 30, y}, .text = series.name, .size = kText - 0.5});
-      x += 52 + 6.8 * static_cast<double>(series.name.size());
+      const double width = 30 + 6.8 * static_cast<double>(series.name.size());
+      if (x > kLeft && x + width > right()) {
+        x = kLeft;
+        y += kLegendRow;
+      }
+      entry(series, Eigen::Vector2d(x, y));
+      x += width + 22;
     }
+  }
+
+  [[nodiscard]] int num_legend_rows() const {
+    int rows = 0;
+    for_each_in_rows(0, [&rows](const Series&, const Eigen::Vector2d& place) {
+      rows = 1 + static_cast<int>(std::lround(place.y() / kLegendRow));
+    });
+    return rows;
+  }
+
+  void legend_rows() {
+    for_each_in_rows(top_ - 14 - kLegendRow * (num_legend_rows() - 1), [this](const Series& series, const auto& place) {
+      mark(series, place - Eigen::Vector2d(0, 4.5));
+      drawing_.add(TextLine{.at = place + Eigen::Vector2d(30, 0), .text = series.name, .size = kText - 0.5});
+    });
   }
 
   /// 22 pixels from `left` to the right.
@@ -213,9 +241,8 @@ class ChartPainter {
                       .hollow = series.hollow});
   }
 
-  /// In the corner that the curves leave most room in.
-  void legend() {
-    if (chart_.legend_above) return legend_row();
+  /// False: it would cover curves in every corner.
+  bool legend_in_a_corner() {
     std::size_t longest = 0;
     double lines = 0;
     for (const Series& series : chart_.series) {
@@ -223,7 +250,7 @@ class ChartPainter {
       longest = std::max(longest, series.name.size());
       ++lines;
     }
-    if (lines == 0) return;
+    if (lines == 0) return true;
     const double width = 46 + 7.0 * static_cast<double>(longest);
     const double height = 10 + 20 * lines;
     Eigen::Vector2d best = at(0, 1);
@@ -237,6 +264,7 @@ class ChartPainter {
         best = start;
       }
     }
+    if (fewest > 0) return false;
     Points box(2, 4);
     box << best, best + Eigen::Vector2d(width, 0), best + Eigen::Vector2d(width, height),
         best + Eigen::Vector2d(0, height);
@@ -253,6 +281,7 @@ class ChartPainter {
       drawing_.add(TextLine{.at = {best.x() + 40, y}, .text = series.name, .size = kText - 0.5});
       y += 20;
     }
+    return true;
   }
 
   [[nodiscard]] double num_covered(const Eigen::Vector2d& start, double width, double height) const {

@@ -62,7 +62,7 @@ Drawing neighbourhood() {
   for (const Place& place : places) {
     const bool right = place.cell.y() > 0 || place.cell.z() != 0 || place.cell.x() < 0;
     const bool middle = place.cell.isZero();
-    Eigen::Vector2d at = view.see(place.cell) + Eigen::Vector2d(middle ? 0 : right ? 66 : -66, middle ? 14 : 6);
+    Eigen::Vector2d at = view.see(place.cell) + Eigen::Vector2d(middle ? 17 : right ? 66 : -66, middle ? 14 : 6);
     if (place.cell.x() < 0) at += Eigen::Vector2d(0, -24);
     drawing.add(TextLine{.at = at,
                          .text = place.label,
@@ -97,7 +97,7 @@ Table faces_suffice(const Context& context) {
               .title = "Cells of the unit hypersphere from one seed through the 2d faces, against all cells",
               .columns = {{"d"},
                           {"faces 2d"},
-                          {"all neighbours 3^d − 1"},
+                          {"all neighbours 3ᵈ − 1"},
                           {"cell size", "{:.3g}"},
                           {"Algorithm I, cells"},
                           {"Algorithm II, one seed, cells"}}};

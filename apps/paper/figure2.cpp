@@ -106,9 +106,10 @@ Drawing vector_triangle() {
   drawing.add(TextLine{
       .at = p1 + Eigen::Vector2d(-12, 26), .text = "p^{i}", .size = 18, .anchor = TextAnchor::end, .italic = true});
   drawing.add(TextLine{.at = p2 + Eigen::Vector2d(14, 22), .text = "p^{i+1}", .size = 18, .italic = true});
-  drawing.add(TextLine{.at = view.see(tip) + Eigen::Vector2d(8, 22),
+  drawing.add(TextLine{.at = view.see(tip) + Eigen::Vector2d(-12, 18),
                        .text = "C_{ss} Δh^{2}",
                        .size = 18,
+                       .anchor = TextAnchor::end,
                        .colour = kBlue,
                        .italic = true});
   drawing.add(TextLine{.at = view.see(here + tangential) + Eigen::Vector2d(-10, -8),

@@ -27,7 +27,7 @@ Surface slot() {
 
 // One on each wall, not far below the rim.
 const Eigen::Vector3d kLeft(-kWidth / 2, 0, -0.25);
-const Eigen::Vector3d kRight(kWidth / 2, 0, -0.35);
+const Eigen::Vector3d kRight(kWidth / 2, 0, -0.27);
 
 /// Down one wall, round the bottom, up the other.
 double true_length() { return (kLeft.z() + kDepth) + (kRight.z() + kDepth) + std::numbers::pi * kWidth / 2; }
@@ -61,7 +61,7 @@ void draw_panel(Drawing& drawing, double left, const GapFilling& filling, const 
   for (Index i = 1; i + 1 < nodes.cols(); ++i) {
     drawing.add(Disc{.centre = nodes.col(i), .radius = 3.8, .colour = colour});
   }
-  for (const auto& [p, name, aside] : {std::tuple{kLeft, "A", -22.0}, {kRight, "B", 12.0}}) {
+  for (const auto& [p, name, aside] : {std::tuple{kLeft, "A", 10.0}, {kRight, "B", -23.0}}) {
     const Eigen::Vector2d at = see(p.x(), p.z());
     drawing.add(Disc{.centre = at, .radius = 6});
     drawing.add(TextLine{.at = at + Eigen::Vector2d(aside, 6), .text = name, .size = 17, .bold = true});

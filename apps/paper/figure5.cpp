@@ -36,7 +36,7 @@ const std::vector<March>& marches() {
 Figure picture(const Surface& hemisphere, const Chain& chain, double cell, const std::string& name,
                const Context& context) {
   Scene scene;
-  scene.title = fmt::format("{} cells of size {:.3g}", chain.num_cells, cell);
+  scene.title = fmt::format("{} of {} cells of size {:.3g}", chain.cells.cols(), chain.num_cells, cell);
   scene.meshes.push_back({.mesh = display_mesh(hemisphere, {.cell = 0.05}, context), .colour = Colour::hex(0xd7dee5)});
   scene.cells = SceneCells{.centres = chain.cells, .size = cell};
   scene.paths.push_back({.points = chain.grid_path,

@@ -38,6 +38,13 @@ GeodesicInertia geodesic_inertia(const std::vector<PathResult>& paths) {
   return inertia;
 }
 
+namespace {
+
+/// Of the axes' rays: to rounding they cannot be followed on a fit, which is noisy at 1e-10 of its size.
+constexpr double kRayTolerance = 1e-6;
+
+}  // namespace
+
 void write_inertia(Study& study, Section& section) {
   section.text(
       "The paper names inertia matrices constructed by geodesics without saying more. Here each destination counts as "
@@ -107,11 +114,12 @@ void write_inertia(Study& study, Section& section) {
     for (const double side : {-1.0, 1.0}) {
       const ExponentialResult ray =
           exponential_map(hand.surface, paths.front().from, side * inertia.directions.col(axis), reach,
-                          {.conjugate = false}, study.context);
+                          {.tolerance = kRayTolerance, .conjugate = false}, study.context);
       if (ray.points.cols() > 1)
         scene.paths.push_back({.points = ray.points,
                                .label = axis == 0 ? "first axis" : "second axis",
-                               .colour = axis == 0 ? kRed : kBlue});
+                               .colour = axis == 0 ? kRed : kBlue,
+                               .length = ray.length});
     }
   }
   scene.points.push_back({.position = paths.front().from, .colour = kInk});

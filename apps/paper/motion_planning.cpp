@@ -134,10 +134,11 @@ void write_motion_planning(Study& study, Section& section) {
   scene.meshes.push_back({.mesh = display_mesh(arm, {}, study.context), .colour = Colour::hex(0xd3dde6)});
   if (reach.points.cols() > 1)
     scene.paths.push_back({.points = reach.points, .label = "shortest motion", .colour = kRed, .length = reach.length});
-  pictures.push_back(figure_of("motion_arm",
-                               "All positions of an arm (three angles) whose hand keeps its height, and the shortest "
-                               "motion between two of them.",
-                               scene, {.width = 640, .height = 480}));
+  pictures.push_back(
+      figure_of("motion_arm",
+                "All positions of an arm (three angles between −π and π) whose hand keeps its height, and "
+                "the shortest motion between two of them.",
+                scene, {.width = 640, .height = 480, .towards_viewer = {-0.78, -0.55, -0.31}}));
   section.add_row(std::move(pictures));
   section.add(std::move(table));
 }

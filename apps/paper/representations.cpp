@@ -121,19 +121,20 @@ void write_representations(Study& study, Report& report) {
                   over.length, on_faces));
   section.add(mesh);
   Scene scene;
-  scene.title = "A cube's corners, and what is fitted through them";
-  SceneLines edges{.vertices = corners.points, .segments = Eigen::Matrix2Xi(2, 12), .name = "cube", .colour = kInk};
-  Index count = 0;
-  for (int i = 0; i < 8; ++i) {
-    for (const int bit : {1, 2, 4}) {
-      if ((i & bit) == 0) edges.segments.col(count++) << i, i | bit;
-    }
-  }
+  scene.title = "What is fitted through a cube's corners";
   scene.meshes.push_back(
       {.mesh = display_mesh(fitted, {.cell = 0.12}, study.context), .colour = Colour::hex(0xd3dde6)});
-  scene.lines.push_back(edges);
   if (over.points.cols() > 1)
     scene.paths.push_back({.points = over.points, .label = "path on the fit", .colour = kRed, .length = over.length});
+  // Edges as paths: those are seen through the ball.
+  for (int i = 0; i < 8; ++i) {
+    for (const int bit : {1, 2, 4}) {
+      if ((i & bit) != 0) continue;
+      Points edge(3, 2);
+      edge << corners.points.col(i), corners.points.col(i | bit);
+      scene.paths.push_back({.points = edge, .label = "the cube's edges", .colour = kInk, .width = 0.5});
+    }
+  }
   section.add(figure_of("representations_cube", "The cube (edges) and the surface that is fitted through its corners.",
                         scene, {.width = 640, .height = 480}));
   section.remark(
