@@ -450,6 +450,10 @@ bool Shortener::slide() {
       note_ends();
       return true;
     }
+    // An arc that has shrunk to nothing has no direction: it goes, before anything else is asked.
+    if (std::any_of(c_.arcs.begin(), c_.arcs.end(), [&](const ChainArc& arc) { return arc.length <= together_; })) {
+      return true;
+    }
   }
   return fail("the crossings of the edges do not settle");
 }
@@ -471,10 +475,21 @@ bool Shortener::move_along(ChainStop& stop, double step, int& out, int& conditio
     return most;
   };
   const double slack = kOnEdge * s_.scale;
+  // Conditions alone do not tell where faces of one plane are joined (two bars with their tops level): there both hold
+  // inside the face. The ring of faces does.
+  const auto on_edge = [&](const Point3& x, int* which) {
+    *which = -1;
+    if (beyond(x, which) > slack) return false;
+    const std::optional<Star> star = s_.star(x, slack);
+    return star && std::any_of(star->wedges.begin(), star->wedges.end(), [&](const Wedge& wedge) {
+             const auto same = [&](int e) { return e >= 0 && s_.edge(e).a == edge.a && s_.edge(e).b == edge.b; };
+             return same(wedge.first_edge) || same(wedge.second_edge);
+           });
+  };
   out = 0;
   int which = -1;
   if (!s_.move(stop.edge, step, stop.x)) return false;
-  if (beyond(stop.x, &which) <= slack) return true;
+  if (on_edge(stop.x, &which)) return true;
   double good = 0;
   double bad = 1;
   Point3 last = from;
@@ -483,12 +498,12 @@ bool Shortener::move_along(ChainStop& stop, double step, int& out, int& conditio
     const double u = (good + bad) / 2;
     Point3 x = from;
     int c = -1;
-    if (s_.move(stop.edge, u * step, x) && beyond(x, &c) <= slack) {
+    if (s_.move(stop.edge, u * step, x) && on_edge(x, &c)) {
       good = u;
       last = x;
     } else {
       bad = u;
-      if (c >= 0) which = c;
+      which = c;
     }
   }
   stop.x = last;
@@ -941,26 +956,35 @@ bool Shortener::stay_on_face(std::size_t i, bool& changed) {
 /// Looks for what a settled chain breaks, and mends one thing.
 bool Shortener::change(bool& changed) {
   changed = false;
+  if (drop_empty_arcs()) {
+    changed = true;
+    return true;
+  }
   if (!at_end_.empty()) {
     const std::size_t at = at_end_.front();
     ChainStop& stop = c_.stops[at];
-    if (end_condition_.front() >= 0) {
-      const SharpEdge edge = s_.edge(stop.edge);
-      Point3 x = stop.x;
-      if (!s_.project(edge.a, {edge.condition, end_condition_.front()}, x) || (x - stop.x).norm() > 1e-4 * s_.scale) {
-        return fail("the end of an edge was not found");
+    const SharpEdge edge = s_.edge(stop.edge);
+    // The corner: with the condition that fails beyond it, or one of those of the edges that meet there.
+    std::vector<int> others{end_condition_.front()};
+    if (const std::optional<Star> star = s_.star(stop.x, 1e-7 * s_.scale)) {
+      for (const Wedge& wedge : star->wedges) {
+        others.push_back(wedge.first_condition);
+        others.push_back(wedge.second_condition);
       }
+    }
+    for (const int other : others) {
+      if (other < 0 || other == edge.condition) continue;
+      Point3 x = stop.x;
+      if (!s_.project(edge.a, {edge.condition, other}, x) || (x - stop.x).norm() > 1e-6 * s_.scale) continue;
+      const std::optional<Star> star = s_.star(x, kOnEdge * s_.scale);
+      if (!star || (star->closed && star->wedges.size() < 3)) continue;
       stop.x = x;
       stop.kind = Kind::corner;
       c_.arcs[at - 1].done = c_.arcs[at].done = false;
       changed = true;
       return true;
     }
-    return fail("an arc along an edge runs over its end");
-  }
-  if (drop_empty_arcs()) {
-    changed = true;
-    return true;
+    return fail("a path runs over the end of an edge where no corner was found");
   }
   for (std::size_t i = 1; i + 1 < c_.stops.size(); ++i) {
     if (c_.stops[i].kind == Kind::corner && go_round(i)) {

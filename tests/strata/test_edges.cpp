@@ -162,6 +162,28 @@ TEST(Edges, CornersOfAngleAbovePi) {
   EXPECT_EQ(corners, 2);
 }
 
+TEST(Edges, LevelTopsOfTwoBars) {
+  // The tops of two crossed bars are one face with four corners that reach into it.
+  const PathResult found = path("min(max(abs(x)-1,abs(y)-0.3,abs(z)-0.3),max(abs(x)-0.3,abs(y)-1,abs(z)-0.3))",
+                                {-0.1, -0.5, 0.3}, {-0.9, -0.3, 0.1});
+  expect_length(found, std::hypot(0.2, 0.2) + std::hypot(0.6, 0.2), 1e-11);
+}
+
+TEST(Edges, BoredBlock) {
+  // From a wall over the lid into the bore: the crossing of the rim that is seen, not the one behind the hole.
+  const std::string block = "max(max(abs(x)-1,abs(y)-1),max(abs(z)-1,0.5-x^2-y^2))";
+  const double r = std::sqrt(0.5);
+  const double at = 200 * kPi / 180;  // of the end in the bore, 0.05 deep; the start is on the lid at 270 degrees
+  const double want = least(
+      [&](double rim) {
+        const double lid = std::hypot(r * std::cos(rim), r * std::sin(rim) + 0.95);
+        return lid + std::hypot(r * (rim - at), 0.05);
+      },
+      at, 1.5 * kPi);
+  const PathResult found = path(block, {0, -0.95, 1}, {r * std::cos(at), r * std::sin(at), 0.95});
+  expect_length(found, want, 1e-11);
+}
+
 TEST(Edges, ArcAlongAnEdge) {
   // A pillar on the floor: tangents and an arc of its foot.
   const PathResult found = path("min(z, x^2+y^2-1)", {-2, 0.2, 0}, {2, 0.2, 0});
