@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "curve/gap_insertion.hpp"
 #include "support/surfaces.hpp"
@@ -80,6 +81,69 @@ TEST(GapInsertion, AGapWiderThanACellIsCountedApart) {
     EXPECT_EQ(insertion.num_projected(), 0);
     EXPECT_EQ(insertion.num_across_cells(), origin == 0.0 ? insertion.num_in_plane() : 0) << "origin " << origin;
     if (origin != 0.0) EXPECT_EQ(insertion.num_in_plane(), 1);
+  }
+}
+
+/// (x^2 / a^2 + z^2 / b^2 - 1) exp(k x) = 0 for all y: two walls that come together above and below; unrolled it is a
+/// plane. Between the walls the gradient points to the left one.
+struct FlatTubeFunction {
+  double a = 0.4;
+  double b = 1.2;
+  double k = 4;
+  [[nodiscard]] static Index dim() { return 3; }
+  [[nodiscard]] double quadric(const Vector& x) const { return x(0) * x(0) / (a * a) + x(2) * x(2) / (b * b) - 1; }
+  [[nodiscard]] Eigen::Vector3d slope(const Vector& x) const { return {2 * x(0) / (a * a), 0, 2 * x(2) / (b * b)}; }
+  [[nodiscard]] double value(const Vector& x) const { return std::exp(k * x(0)) * quadric(x); }
+  [[nodiscard]] Vector gradient(const Vector& x) const {
+    return std::exp(k * x(0)) * (slope(x) + k * quadric(x) * Eigen::Vector3d::UnitX());
+  }
+  [[nodiscard]] Eigen::MatrixXd hessian(const Vector& x) const {
+    Eigen::Matrix3d bend = Eigen::Vector3d(2 / (a * a), 0, 2 / (b * b)).asDiagonal();
+    bend.row(0) += k * slope(x).transpose();
+    bend.col(0) += k * slope(x);
+    bend(0, 0) += k * k * quadric(x);
+    return std::exp(k * x(0)) * bend;
+  }
+  /// By the angle from the right wall's middle to the top.
+  [[nodiscard]] Eigen::Vector3d point(double t, double y = 0) const { return {a * std::cos(t), y, b * std::sin(t)}; }
+  /// Of the arc between two angles, by Simpson's rule.
+  [[nodiscard]] double length(double from, double to) const {
+    constexpr int kParts = 2000;
+    const double step = (to - from) / kParts;
+    double sum = 0;
+    for (int i = 0; i <= kParts; ++i) {
+      const double t = from + i * step;
+      sum += (i == 0 || i == kParts ? 1 : i % 2 == 1 ? 4 : 2) * std::hypot(a * std::sin(t), b * std::cos(t));
+    }
+    return sum * step / 3;
+  }
+};
+
+// A start that crosses from wall to wall in one cell, as a marched path may. Projected, every new node falls back on
+// the left wall, and the curve would rest in another class, or nowhere; (5) leads it over the top.
+TEST(FlowInsertion, FromWallToWallInOneCellThePlaneLeadsOverTheTop) {
+  constexpr FlatTubeFunction kTube;
+  const Surface surface = test::make_surface(kTube);
+  constexpr double kFrom = -0.9;
+  constexpr Index kSide = 20;
+  const double truth = kTube.length(kFrom, std::numbers::pi - kFrom);
+  for (const double last : {0.1, 0.25}) {
+    Points start(3, 2 * kSide);
+    for (Index i = 0; i < kSide; ++i) {
+      const double part = static_cast<double>(i) / (kSide - 1);
+      const double t = kFrom + part * (last - kFrom);
+      const double y = 0.03 * std::sin(std::numbers::pi * part);
+      start.col(i) = kTube.point(std::numbers::pi - t, y);
+      start.col(2 * kSide - 1 - i) = kTube.point(t + 0.01 * part, -y);
+    }
+    for (const double spacing : {0.0, 0.03}) {
+      const FlowResult result = correct_flow(surface, start, {.spacing = spacing, .lattice = kOneCell});
+      ASSERT_EQ(result.status, Status::ok) << result.reason;
+      EXPECT_GE(result.summary.num_plane_inserted, 1);
+      EXPECT_LE(result.length, truth);
+      EXPECT_NEAR(result.length, truth, result.length_error) << "last " << last << ", spacing " << spacing;
+      EXPECT_LT(result.length_error, 1e-3);
+    }
   }
 }
 
