@@ -92,7 +92,7 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   // Of a way that was not settled it is not known whether it is as short.
   result.rivals_sought = unsolved > (1 + kWaySlack) * best;
   // A way that promised a shorter path.
-  if (unsolved < (1 - kWaySlack) * best) {
+  if (unsolved < best) {
     result.message =
         fmt::format("a shorter path may exist: a way of length {:.6g} was not settled ({})", unsolved, why);
   }
@@ -124,6 +124,9 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
   bool solved = false;
   double grown = apart;
   double cells = kCells;
+  bool first_try = true;  // else: after one that left doubts
+  std::vector<Found> first_try_found;
+  std::string first_try_message;
   for (int round = 0; round < kMostGraphs; ++round) {
     const Stopwatch watch;
     try {
@@ -141,6 +144,12 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     result.seconds.cells += watch.seconds();
     double way = 0;
     solved = current != nullptr && correct(*current, p, q, result, found, way);
+    if (!solved && !first_try) {
+      found = std::move(first_try_found);
+      result.message = first_try_message;
+      solved = true;
+      break;
+    }
     if (!solved && way > 0) {
       // There are ways, but none settled: on finer cells, around them.
       if (cells > kCells) break;
@@ -159,7 +168,23 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     needed = intersection(needed, ends ? box : extent.whole);
     const bool holds = current->box().contains(needed.lower) && current->box().contains(needed.upper);
     const bool fine = current->size() <= length / kCellsAlong;
-    if (holds && (fine || options_.cell > 0)) break;
+    if (holds && (fine || options_.cell > 0)) {
+      if (!first_try) {
+        // Twice looked at: the shorter one, and its doubts.
+        if (first_try_found.front().chain.length <= length) {
+          found = std::move(first_try_found);
+          if (first_try_message.empty() || !result.message.empty()) result.message = first_try_message;
+        }
+        break;
+      }
+      if (result.message.empty() || options_.cell > 0) break;
+      first_try = false;
+      first_try_found = found;
+      first_try_message = result.message;
+      cells *= kFiner;
+      box = needed;
+      continue;
+    }
     if (round + 1 == kMostGraphs) {
       result.message = "a shorter path may exist: it was not looked for everywhere";
       break;

@@ -1140,10 +1140,27 @@ FacetChain chain_of(FacetedSurface& surface, const FacetWay& way) {
       both = way.faces[i];
     }
     current = std::move(both);
+    // Corners that reach into the face, beside the way: the path may bend there. Those that it does not need are left
+    // again.
+    bool bent = false;
+    for (const ReflexCorner& reflex : way.reflex) {
+      if (reflex.step != i) continue;
+      const auto face = std::find_if(current.begin(), current.end(), [&](int f) {
+        return std::find(reflex.faces.begin(), reflex.faces.end(), f) != reflex.faces.end();
+      });
+      if (face == current.end()) continue;
+      current = {*face};
+      points.push_back(reflex.x);
+      edges.push_back(-1);
+      close({.kind = Kind::corner, .x = reflex.x});
+      points = {reflex.x};
+      edges = {-1};
+      bent = true;
+    }
     // From one edge of a face to the next: perhaps over the corner between them, which steps of the graph may cut.
     const int e = way.edge[i];
     const int f = way.edge[i + 1];
-    if (i > 0 && i + 1 < steps && e >= 0 && f >= 0 && e != f) {
+    if (!bent && i > 0 && i + 1 < steps && e >= 0 && f >= 0 && e != f) {
       const int face = current.front();
       const Point3 to = way.points[i + 1];
       Point3 x = (at + to) / 2;

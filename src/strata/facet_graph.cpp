@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <queue>
 #include <set>
@@ -42,6 +43,9 @@ constexpr double kRidge = 0.003;
 constexpr std::size_t kMostWays = 48;
 /// A wedge of more than this goes all around, radians.
 constexpr double kWholeTurn = 6.28;
+/// Angles above pi by this, radians, make a corner reach into a face; ways pass it within so many cells.
+constexpr double kReflex = 1e-6;
+constexpr double kBesideWay = 1.5;
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 void insert_face(std::vector<int>& faces, int face) {
@@ -98,6 +102,7 @@ void FacetGraph::add(Node node) {
       }
     }
   }
+  if (!node.reflex.empty()) reflex_.push_back(static_cast<std::uint32_t>(nodes_.size()));
   bins_[bin].push_back(static_cast<std::uint32_t>(nodes_.size()));
   nodes_.push_back(std::move(node));
 }
@@ -146,7 +151,10 @@ void FacetGraph::fill_cell(const Box& cell, const std::vector<int>& kinks) {
   std::optional<Star> star;
   const auto add_star = [&](int edge, bool corner) {
     Node node{x, {}, edge, corner};
-    for (const Wedge& wedge : star->wedges) insert_face(node.faces, wedge.face);
+    for (const Wedge& wedge : star->wedges) {
+      insert_face(node.faces, wedge.face);
+      if (corner && wedge.angle > std::numbers::pi + kReflex) insert_face(node.reflex, wedge.face);
+    }
     std::sort(node.faces.begin(), node.faces.end());
     add(std::move(node));
   };
@@ -330,6 +338,21 @@ std::vector<FacetWay> FacetGraph::ways(const Point3& p, const Point3& q, double 
         }
         way.faces.push_back(std::move(faces));
       }
+    }
+    for (const std::uint32_t corner : reflex_) {
+      const Point3& x = nodes_[corner].x;
+      double least = kBesideWay * size_;
+      std::size_t nearest = way.faces.size();
+      for (std::size_t i = 0; i + 1 < way.points.size(); ++i) {
+        const Point3 along = way.points[i + 1] - way.points[i];
+        const double u = std::clamp(along.dot(x - way.points[i]) / along.squaredNorm(), 0.0, 1.0);
+        const double away = (way.points[i] + u * along - x).norm();
+        if (away >= least) continue;
+        least = away;
+        nearest = i;
+      }
+      const bool on_way = least <= 1e-9 * surface_.scale;
+      if (nearest < way.faces.size() && !on_way) way.reflex.push_back({x, nodes_[corner].reflex, nearest});
     }
     return way;
   };

@@ -8,6 +8,13 @@
 
 namespace taut::detail {
 
+/// A corner that reaches into faces, where they have more than 180 degrees, next to a way.
+struct ReflexCorner {
+  Point3 x;
+  std::vector<int> faces;
+  std::size_t step = 0;  ///< of the way, nearest to it
+};
+
 /// One way between two points over a graph: what a path is corrected from.
 struct FacetWay {
   double length = 0;
@@ -16,6 +23,7 @@ struct FacetWay {
   std::vector<std::vector<int>> faces;
   std::vector<bool> corner;  ///< one a point
   std::vector<int> edge;     ///< one a point: the edge it lies on, or -1
+  std::vector<ReflexCorner> reflex;
 };
 
 /// Points of every face, edge and corner in the cells of a box, joined to their neighbours on the same face. Shortest
@@ -40,6 +48,7 @@ class FacetGraph {
     std::vector<int> faces;
     int edge = -1;
     bool corner = false;
+    std::vector<int> reflex = {};  // faces that a corner reaches into
   };
   struct Link {
     std::uint32_t to;
@@ -61,6 +70,7 @@ class FacetGraph {
   double size_;
   Index num_cells_ = 0;
   std::vector<Node> nodes_;
+  std::vector<std::uint32_t> reflex_;  // corners that reach into a face
   std::vector<std::vector<Link>> links_;
   std::map<std::array<int, 3>, std::vector<std::uint32_t>> bins_;
 };
