@@ -169,6 +169,16 @@ TEST(Edges, LevelTopsOfTwoBars) {
   expect_length(found, std::hypot(0.2, 0.2) + std::hypot(0.6, 0.2), 1e-11);
 }
 
+TEST(Edges, SlabWithATower) {
+  // From below over an edge and round the tower's foot on the top: found from one end only, before corners were tried.
+  const std::string tower = "min(max(abs(x)-1,abs(y)-1,abs(z)-0.2),max(abs(x)-0.4,abs(y)-0.4,abs(z-0.5)-0.6))";
+  const Eigen::Vector3d above(-0.7, -0.02, 0.2);
+  const Eigen::Vector3d below(0.9, -0.03, -0.2);
+  const double want = std::hypot(0.1 + 0.4 + 0.6, 0.37) + 0.8 + std::hypot(0.3, 0.38);
+  expect_length(path(tower, above, below), want, 1e-11);
+  expect_length(path(tower, below, above), want, 1e-11);
+}
+
 TEST(Edges, BoredBlock) {
   // From a wall over the lid into the bore: the crossing of the rim that is seen, not the one behind the hole.
   const std::string block = "max(max(abs(x)-1,abs(y)-1),max(abs(z)-1,0.5-x^2-y^2))";
