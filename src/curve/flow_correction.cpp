@@ -101,7 +101,9 @@ std::vector<bool> FlowCorrection::bent_intervals(const FlowNodes& nodes, double 
   return bent;
 }
 
-/// Intervals as long as the path's own bends ask for stay so: what is relaxed is a graded polyline.
+/// What is relaxed is a graded polyline, its intervals as long as the path's own bends ask for, and they stay so.
+/// Chords are shortest where a long one cuts a sharp bend, so nodes slide until one does, unless the bend's
+/// surroundings are cut finely, too: that is why intervals grow from one to the next by a quarter only.
 FlowState FlowCorrection::first_curve(const PointsIn& start) {
   const Index num_intervals = std::clamp<Index>(start.cols() - 1, kFewestIntervals, kMostStartIntervals);
   Points points = at_equal_parts(start, num_intervals);
@@ -118,9 +120,9 @@ FlowState FlowCorrection::first_curve(const PointsIn& start) {
     if (insertion_.insert(points, wide) == 0) break;
   }
   const double loose = bound(polyline_length(start), false);
+  FlowCurve curve{points, interval_lengths(points)};
   for (int round = 0;; ++round) {
-    const Vector widths = interval_lengths(points);
-    FlowState state = solver_.relax({std::move(points), widths}, loose);
+    FlowState state = solver_.relax(std::move(curve), loose);
     if (is_over(state) || state.nodes.size() > kMostRoughNodes) return state;
     points = state.nodes.points();
     const std::vector<bool> bent = bent_intervals(state.nodes, kRoughTurn);
@@ -129,6 +131,21 @@ FlowState FlowCorrection::first_curve(const PointsIn& start) {
       state.outcome = FlowOutcome::torn;
       return state;
     }
+    cut_to_rule(points,
+                {.longest = interval_lengths(points).maxCoeff(), .per_radius = kRoughTurn, .per_turn = kStartTurn});
+    curve = {points, interval_lengths(points)};
+  }
+}
+
+/// Inserts nodes until no interval is much longer than wanted where it is.
+void FlowCorrection::cut_to_rule(Points& points, const IntervalRule& rule) {
+  FlowNodes nodes(surface_.dim(), surface_.codim());
+  for (int round = 0; round < kMostRounds && points.cols() < kMostRoughNodes && !solver_.out_of_work(); ++round) {
+    nodes.evaluate(evaluator_, points);
+    const Vector longer = interval_lengths(points).cwiseQuotient(wanted_intervals(points, normal_turns(nodes), rule));
+    std::vector<bool> wide;
+    for (const double ratio : longer) wide.push_back(ratio > kGap);
+    if (insertion_.insert(points, wide) == 0) return;
   }
 }
 
@@ -222,6 +239,7 @@ FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
     const Index before = points.cols();
     const Index inserted = insertion_.insert(points, wide);
     if (last && (inserted == 0 || ++rounds > kMostClosingRounds)) break;
+    if (last) cut_to_rule(points, rule);  // a bend's surroundings, too: see first_curve
     if (solver_.out_of_work()) {
       state.outcome = FlowOutcome::out_of_work;
       break;

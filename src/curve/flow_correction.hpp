@@ -26,6 +26,7 @@ class FlowCorrection {
 
  private:
   [[nodiscard]] FlowState first_curve(const PointsIn& start);
+  void cut_to_rule(Points& points, const IntervalRule& rule);
   [[nodiscard]] IntervalRule choose_rule(const Points& points) const;
   [[nodiscard]] FlowState refine(FlowState state, double& coarse_length);
 

@@ -147,6 +147,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     best = std::move(by_table);
   }
   if (!sure && best->status == Status::ok && options_.method != CorrectionMethod::grid) {
+    best->rivals_sought = false;
     best->message = fmt::format(
         "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it", marched);
   }

@@ -166,7 +166,9 @@ void CellLevels::refine_to_curvature() {
   const bool refines = surface_.dim() == 3 && request_.size == 0 && !grows();
   for (int i = 0; i < kMostRefinements; ++i) {
     const NormalTurns turns(*coarsest.cells, context_);
-    resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, kTypically);
+    // Of a size that was asked for no rims will be refined.
+    const double part = request_.size > 0 ? kNearlyEverywhere : kTypically;
+    resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, part);
     const bool enough = resolved_ && (i >= kRefinementsForRims || turns.mostly_within(kMostTurn, kNearlyEverywhere));
     if (enough || !refines || 4 * coarsest.cells->num_cells() > kMostRefinedCells) return;
     size_ /= 2;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "query/start_finder.hpp"
-#include "query/strand.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/curve/spectral_curve.hpp"
 #include "taut/query/path.hpp"
@@ -33,7 +32,7 @@ class Corrector {
     std::optional<FlowSummary> flow;
   };
 
-  [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start);
+  [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start, const FlowLattice& lattice);
   /// Fills the message.
   void explain(Corrected& corrected) const;
   /// A start to be corrected to the end.
@@ -64,7 +63,7 @@ class Corrector {
   const Context& context_;
   Solvers rough_;
   Solvers newton_;
-  std::optional<StrandMaker> maker_;
+  Index num_gentle_nodes_ = 0;  // evaluated by correct_gently
 };
 
 /// A geodesic before a curve that is none, then the shorter one, be it through a singular point (rank_deficient): the

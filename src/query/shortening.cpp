@@ -56,8 +56,12 @@ void solve_tridiagonal(std::vector<double> diagonal, const std::vector<double>& 
 
 }  // namespace
 
-Shortening::Shortening(const StrandMaker& maker, Strand strand, double gap)
-    : maker_(maker), strand_(std::move(strand)), gap_(gap), scale_(strand_.points.cwiseAbs().maxCoeff()) {
+Shortening::Shortening(const StrandMaker& maker, Strand strand, double gap, Index most_projected)
+    : maker_(maker),
+      strand_(std::move(strand)),
+      gap_(gap),
+      scale_(strand_.points.cwiseAbs().maxCoeff()),
+      last_projected_(maker.num_projected() + most_projected) {
   set_weights();
 }
 
@@ -193,7 +197,7 @@ bool Shortening::is_a_point() const {
 }
 
 Shortening::Outcome Shortening::run(double settle, const Context& context) {
-  for (int i = 0; num_steps_ < kMostSteps; ++i) {
+  for (int i = 0; num_steps_ < kMostSteps && maker_.num_projected() < last_projected_; ++i) {
     context.check_cancelled();
     if (strand_.num_points() < 3 || is_a_point()) return is_a_point() ? Outcome::a_point : Outcome::settled;
     if (i % kReweighEvery == 0) {

@@ -15,11 +15,11 @@ class Shortening {
   enum class Outcome {
     settled,  ///< the next step would be small
     a_point,  ///< less than half a segment is left of it: within its class it shrinks to a point
-    stuck,    ///< no step shortens it, or too many were needed
+    stuck,    ///< no step shortens it, or the work allowed was used up
   };
 
-  /// `gap`: the longest segment, model units.
-  Shortening(const StrandMaker& maker, Strand strand, double gap);
+  /// `gap`: the longest segment, model units. `most_projected`: points projected in all, the work allowed.
+  Shortening(const StrandMaker& maker, Strand strand, double gap, Index most_projected = 20'000'000);
 
   /// Until no point would move by more than `settle` (model units).
   [[nodiscard]] Outcome run(double settle, const Context& context);
@@ -47,6 +47,7 @@ class Shortening {
   double gap_;
   double scale_;
   std::vector<double> weights_;  // parameter length of each segment
+  Index last_projected_;         // of the maker's count
   int num_steps_ = 0;
 };
 

@@ -24,7 +24,6 @@ constexpr double kMostMoved = 0.4;
 constexpr double kLongestHalf = 0.85;
 /// At a crease the normal turns however short the segments: they are not cut below this part of the gap.
 constexpr double kShortest = 1e-3;
-constexpr Index kMostPoints = 2'000'000;
 
 }  // namespace
 
@@ -41,11 +40,12 @@ Points Strand::polyline() const {
   return line;
 }
 
-StrandMaker::StrandMaker(const Surface& surface)
-    : dim_(surface.dim()), codim_(surface.codim()), evaluator_(surface.make_evaluator()) {}
+StrandMaker::StrandMaker(const Surface& surface, Index most_points)
+    : dim_(surface.dim()), codim_(surface.codim()), most_points_(most_points), evaluator_(surface.make_evaluator()) {}
 
 Eigen::Array<bool, Eigen::Dynamic, 1> StrandMaker::project(Points& points, Points& normals, double off) const {
   Eigen::MatrixXd basis;
+  num_projected_ += points.cols();
   const auto found = project_to_surface(*evaluator_, dim_, codim_, points, {.max_distance = off}, &basis);
   normals = std::move(basis);
   return found;
@@ -97,7 +97,9 @@ Index StrandMaker::refine(Strand& strand, double gap, double most_turn, std::vec
     }
     if (cut.empty()) return -1;
     const auto added = static_cast<Index>(cut.size());
-    if (n + added > kMostPoints) throw OutOfMemory("the polyline needs more than 2,000,000 points on this surface");
+    if (n + added > most_points_) {
+      throw OutOfMemory(fmt::format("the polyline needs more than {} points on this surface", most_points_));
+    }
     Points middle(dim_, added);
     for (Index c = 0; c < added; ++c) {
       const Index i = cut[static_cast<std::size_t>(c)];

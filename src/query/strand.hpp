@@ -27,7 +27,8 @@ struct Strand {
 /// Makes strands on one surface. One thread's.
 class StrandMaker {
  public:
-  explicit StrandMaker(const Surface& surface);
+  /// `most_points`: a strand that needs more throws OutOfMemory.
+  explicit StrandMaker(const Surface& surface, Index most_points = 2'000'000);
 
   /// `polyline` (d x m, finite), projected and cut until no segment is longer than `gap` and the normal turns by less
   /// than 0.35 radians along each. Throws InvalidArgument, naming the points (from 1), where a point lies more than
@@ -35,7 +36,7 @@ class StrandMaker {
   [[nodiscard]] Strand make(const PointsIn& polyline, bool closed, double gap, double off) const;
 
   /// Cuts the segments longer than `gap` or along which the normal turns by more than `turn`. Returns the first segment
-  /// whose middle is not plain, or -1.
+  /// whose middle is not plain, or -1. Throws OutOfMemory.
   [[nodiscard]] Index refine(Strand& strand, double gap, double turn, std::vector<Index>* origin = nullptr) const;
 
   /// Projects points (d x n) in place and fills their normals. False for a point that found no surface within `off`.
@@ -48,10 +49,15 @@ class StrandMaker {
   /// The largest angle between the normal spaces at two points (d k each), radians; pi where the orientation differs.
   [[nodiscard]] double turn(const VectorIn& a, const VectorIn& b) const;
 
+  /// Points projected so far: what a budget of work is counted in.
+  [[nodiscard]] Index num_projected() const { return num_projected_; }
+
  private:
   Index dim_;
   Index codim_;
+  Index most_points_;
   std::unique_ptr<Evaluator> evaluator_;
+  mutable Index num_projected_ = 0;
 };
 
 }  // namespace taut::detail
