@@ -78,8 +78,10 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
   }
   // Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
   // shortest way: try finer ones. The first path above doubt is returned; failing that, the better of the first two.
+  // That no path comes from cells far coarser, by request, than would be chosen says little, and does not count.
   std::optional<PathResult> best;
   std::optional<Barrier> barrier;
+  bool tried = false;
   bool sure = true;
   bool doubts = false;
   std::optional<PathResult> walked;
@@ -124,8 +126,9 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     }
     // Within a cell the start is as good as it gets; without cells there is no other.
     const bool only = !levels().exist() || (p - q).norm() < result.cell;
-    const bool second_try = best.has_value();
-    const bool last = only || second_try || level + 1 == num_levels();
+    const bool second_try = tried;
+    const bool coarse = levels().coarser_than_chosen(level);
+    const bool last = only || second_try || coarse || level + 1 == num_levels();
     sure = corrector.correct(result, starts, last) || only;
     marched = starts.paths.front().length;
     if (!best || is_better(result, *best)) {
@@ -133,6 +136,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
       doubts = result.corrected && doubted(result, starts, level);
     }
     best->seconds = result.seconds;
+    tried = !coarse || best->status == Status::ok;
     if (sure || second_try) break;
   }
   if (!best) {

@@ -25,6 +25,8 @@ constexpr double kMostTurn = 0.7;
 constexpr double kNearlyEverywhere = 0.95;
 constexpr double kTypically = 0.75;
 constexpr int kRefinementsForRims = 2;
+/// Half-way to the next level.
+constexpr double kClearlyCoarser = 1.5;
 constexpr int kMostRefinements = 12;
 constexpr Index kMostRefinedCells = 200'000;
 /// Without cells, what stands for their size: this part of the points' extent.
@@ -84,6 +86,14 @@ bool CellLevels::fitted() const { return surface_.samples() != nullptr && surfac
 
 double CellLevels::size(int level) const { return std::ldexp(size_, -level); }
 
+double CellLevels::chosen_size() const {
+  return fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box());
+}
+
+bool CellLevels::coarser_than_chosen(int level) const {
+  return request_.size > 0 && surface_.dim() <= kMostDimensions && size(level) > kClearlyCoarser * chosen_size();
+}
+
 bool CellLevels::prepare(const PointsIn& near) {
   const bool again = size_ > 0;
   if (again) {
@@ -105,7 +115,7 @@ bool CellLevels::prepare(const PointsIn& near) {
   }
   extent_ = find_extent(surface_, near, context_);
   size_ = request_.size;
-  if (size_ == 0) size_ = fitted() ? cell_size_for_samples(*surface_.samples()) : cell_size_for_box(box());
+  if (size_ == 0) size_ = chosen_size();
   (void)plant(near);
   return again;
 }

@@ -54,6 +54,8 @@ class CellLevels {
   /// How many sizes are worth trying: the number of cells grows by 2^(d - 1) each time.
   [[nodiscard]] int num_levels() const { return surface_.dim() <= 3 ? 5 : surface_.dim() == 4 ? 3 : 2; }
   [[nodiscard]] double size(int level) const;
+  /// True where a size was asked for, and cells of this level are clearly coarser than those that would be chosen.
+  [[nodiscard]] bool coarser_than_chosen(int level) const;
   /// Where cells are looked for. Empty until prepared.
   [[nodiscard]] const Box& box() const { return extent_.box; }
   [[nodiscard]] const SurfaceExtent& extent() const { return extent_; }
@@ -87,6 +89,7 @@ class CellLevels {
 
  private:
   [[nodiscard]] bool fitted() const;
+  [[nodiscard]] double chosen_size() const;
   [[nodiscard]] bool grows() const;
   [[nodiscard]] bool plant(const PointsIn& near);
   [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h, CellCounts* counts) const;
