@@ -15,6 +15,7 @@
 #include "query/contender.hpp"
 #include "query/flow_options.hpp"
 #include "query/polyline_residual.hpp"
+#include "query/shortening.hpp"
 #include "query/splices.hpp"
 #include "query/stopwatch.hpp"
 #include "taut/core/error.hpp"
@@ -32,13 +33,20 @@ constexpr double kErrorFactor = 3;
 constexpr double kRoughTolerance = 1e-3;
 /// Splices of those are tried that seem longer than the shortest by no more than this part.
 constexpr double kSpliced = 0.01;
-/// A start from which Newton's method fails is flowed first, where another start has led to a geodesic if it promises
-/// one that is not longer by more than this part. So many starts, ...
+/// A start from which Newton's method fails is brought to rest first, where another start has led to a geodesic if it
+/// promises one that is not longer by more than this part. So many starts, ...
 constexpr double kPromise = 0.01;
 constexpr int kMostGentle = 4;
-/// ... and so many nodes at which the flow evaluates F, for one set of starts. Paths over a scan at 300 cells take
-/// 10,000 to 100,000 of them, 0.1 to 0.5 s.
+/// ... and so much work for one set of starts: nodes at which the flow evaluates F (paths over a scan at 300 cells take
+/// 10,000 to 100,000 of them, 0.1 to 0.5 s), ...
 constexpr Index kMostGentleNodes = 400'000;
+/// ... and points projected in shortening, in all and at a time: 96 segments come to rest within some 300 steps, 30,000
+/// points; on noise of the size of the segments they never do.
+constexpr Index kMostGentleProjected = 100'000;
+constexpr Index kMostGentlePoints = 5'000;
+/// Segments of shortening, and how far from the surface the start may be, in its length.
+constexpr double kGentleSegments = 96;
+constexpr double kGentleOff = 0.1;
 /// Points of more coordinates are not printed.
 constexpr Index kMostPrinted = 16;
 
@@ -128,16 +136,38 @@ void Corrector::in_waves(std::size_t n, const Hopeful& hopeful, const Work& work
 }
 
 /// Newton's method from where the paper's flow brings the start to rest: that inserts nodes until the start follows the
-/// surface, and moves in small steps that keep to their sheet. None where that leads to no geodesic either.
+/// surface. Round rims sharper than its nodes it does not get; there shortening does, whose small steps keep to the
+/// sheet, if the start follows it. None where neither leads to a geodesic.
 std::optional<NewtonResult> Corrector::correct_gently(const Points& start, const FlowLattice& lattice) {
-  const Index left = kMostGentleNodes - num_gentle_nodes_;
+  const auto solve = [&](const Points& from) -> std::optional<NewtonResult> {
+    NewtonResult geodesic = newton(0).solve(from, context_);
+    if (!is_geodesic(geodesic)) return std::nullopt;
+    return geodesic;
+  };
+  if (num_gentle_nodes_ < kMostGentleNodes) {
+    const FlowOptions options{.lattice = lattice, .max_evaluated = kMostGentleNodes - num_gentle_nodes_};
+    const FlowResult flowed = correct_flow(surface_, start, options, context_);
+    num_gentle_nodes_ += flowed.summary.num_evaluated;
+    if (flowed.status == Status::ok) {
+      if (auto geodesic = solve(flowed.points)) return geodesic;
+    }
+  }
+  if (!maker_) maker_.emplace(surface_, kMostGentlePoints);
+  const Index left = last_gentle_projected_ - maker_->num_projected();
   if (left <= 0) return std::nullopt;
-  const FlowResult flowed = correct_flow(surface_, start, {.lattice = lattice, .max_evaluated = left}, context_);
-  num_gentle_nodes_ += flowed.summary.num_evaluated;
-  if (flowed.status != Status::ok) return std::nullopt;
-  NewtonResult geodesic = newton(0).solve(flowed.points, context_);
-  if (!is_geodesic(geodesic)) return std::nullopt;
-  return geodesic;
+  const double length = polyline_length(start);
+  const double gap = length / kGentleSegments;
+  try {
+    Shortening shortening(*maker_, maker_->make(start, false, gap, kGentleOff * length), gap, left);
+    for (const double settled : {0.1, 1e-3}) {
+      const Shortening::Outcome outcome = shortening.run(settled * gap, context_);
+      if (auto geodesic = solve(shortening.strand().polyline())) return geodesic;
+      if (outcome == Shortening::Outcome::stuck) break;
+    }
+  } catch (const InvalidArgument&) {  // too coarse to tell which way round it goes
+  } catch (const OutOfMemory&) {      // rough on the scale of the segments
+  }
+  return std::nullopt;
 }
 
 void Corrector::explain(Corrected& corrected) const {
@@ -256,7 +286,8 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
           hope.found(geodesic.length + geodesic.length_error);
           if (!selects) hope.doubt(choices[j].length, geodesic.length);
         } else {
-          failed.push_back(&choices[j]);
+          // A geodesic beyond the domain is no fault of the start.
+          if (geodesic.status != Status::left_domain) failed.push_back(&choices[j]);
           promised = std::min(promised, geodesic.length + geodesic.length_error);
         }
         if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
@@ -267,6 +298,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   if (options_.method != CorrectionMethod::newton) failed.clear();
   int tries = kMostGentle;
   num_gentle_nodes_ = 0;
+  last_gentle_projected_ = (maker_ ? maker_->num_projected() : 0) + kMostGentleProjected;
   for (const Choice* choice : failed) {
     const bool found = is_geodesic(best->geodesic);
     const bool promises = tries-- > 0 && polyline_length(choice->start) <= (1 + kPromise) * best->geodesic.length;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "query/start_finder.hpp"
+#include "query/strand.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/curve/spectral_curve.hpp"
 #include "taut/query/path.hpp"
@@ -63,7 +64,9 @@ class Corrector {
   const Context& context_;
   Solvers rough_;
   Solvers newton_;
-  Index num_gentle_nodes_ = 0;  // evaluated by correct_gently
+  std::optional<StrandMaker> maker_;
+  Index num_gentle_nodes_ = 0;       // evaluated by correct_gently for these starts
+  Index last_gentle_projected_ = 0;  // of maker_'s count
 };
 
 /// A geodesic before a curve that is none, then the shorter one, be it through a singular point (rank_deficient): the
