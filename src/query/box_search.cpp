@@ -143,7 +143,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
     if (!walked && levels().exist() && look_ != Look::farther) walked = walk(result, p, q, corrector);
     if (walked && walked->points.cols() > 0) return *std::move(walked);
     const bool walks = options_.method != CorrectionMethod::grid;
-    explain_no_way(result, surface_, {barrier, levels().resolved(), walks});
+    explain_no_way(result, surface_, {barrier, levels().mostly_resolved(), walks});
     return result;
   }
   if (by_table && is_better(*by_table, *best)) {

@@ -176,10 +176,11 @@ void CellLevels::refine_to_curvature() {
   const bool refines = surface_.dim() == 3 && request_.size == 0 && !grows();
   for (int i = 0; i < kMostRefinements; ++i) {
     const NormalTurns turns(*coarsest.cells, context_);
+    mostly_resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, kTypically);
+    const bool nearly_everywhere = turns.mostly_within(kMostTurn, kNearlyEverywhere);
     // Of a size that was asked for no rims will be refined.
-    const double part = request_.size > 0 ? kNearlyEverywhere : kTypically;
-    resolved_ = turns.make_a_sheet() && turns.mostly_within(kMostTurn, part);
-    const bool enough = resolved_ && (i >= kRefinementsForRims || turns.mostly_within(kMostTurn, kNearlyEverywhere));
+    resolved_ = mostly_resolved_ && (request_.size == 0 || nearly_everywhere);
+    const bool enough = resolved_ && (i >= kRefinementsForRims || nearly_everywhere);
     if (enough || !refines || 4 * coarsest.cells->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest.cells = subdivided(size_, &coarsest.counts);

@@ -82,6 +82,8 @@ class CellLevels {
   /// False when the cells of level 0 are coarser than the surface bends, since they were asked for or finer ones would
   /// be too many: marched distances may miss ways then. Known once there are such cells.
   [[nodiscard]] bool resolved() const { return resolved_; }
+  /// The same of most cells: where that fails, what was asked for is too coarse to say anything about the surface.
+  [[nodiscard]] bool mostly_resolved() const { return mostly_resolved_; }
 
   /// x (d) brought onto the surface. `name` ("start") says in messages which point it is. Throws InvalidArgument when
   /// x does not fit the surface or lies more than ten cells off it; a move of more than one cell is told.
@@ -102,6 +104,7 @@ class CellLevels {
   Points seeds_;     // surface points that cells without samples grow from
   double size_ = 0;  // h of level 0; 0 until prepared
   bool resolved_ = true;
+  bool mostly_resolved_ = true;
   SurfaceExtent extent_;
   std::mutex mutex_;
   struct Complete {

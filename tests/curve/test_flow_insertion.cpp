@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "curve/gap_insertion.hpp"
 #include "support/surfaces.hpp"
@@ -166,6 +167,37 @@ TEST(FlowInsertion, NoIntervalIsLongerThanTheSpacingOnAFlatEllipsoid) {
     EXPECT_GT(result.summary.longest_interval, 0.4 * spacing);
     if (coarser > 0) EXPECT_NEAR(result.length, coarser, 2e-3);
     coarser = result.length;
+  }
+}
+
+// Nodes slide out of a sharp bend, where a long chord is shorter than two: the flow must cut its surroundings, too. The
+// groove unrolls to a plane; its length is that of the graph from -1 to 1.
+TEST(FlowInsertion, ANarrowGrooveIsFollowedToItsBottom) {
+  constexpr int kParts = 20000;  // Simpson's rule
+  double truth = 0;
+  for (int i = 0; i <= kParts; ++i) {
+    const double x = -1 + 2.0 * i / kParts;
+    const double weight = i == 0 || i == kParts ? 1 : i % 2 == 1 ? 4 : 2;
+    truth += weight * std::sqrt(1 + kGroove.slope(x) * kGroove.slope(x)) * 2 / (3.0 * kParts);
+  }
+  EXPECT_NEAR(truth, 3.634092, 1e-6);
+  // As the march leaves it: a point a cell, walls to and fro.
+  std::vector<Vector> walked;
+  for (double x = -1; x < 1; x += 0.02 / std::hypot(1, kGroove.slope(x))) {
+    walked.emplace_back(kGroove.point(x, 0.01 * std::sin(25 * x) * (1 - x * x)));
+  }
+  walked.front() = kGroove.point(-1);
+  walked.emplace_back(kGroove.point(1));
+  Points start(3, static_cast<Index>(walked.size()));
+  for (Index i = 0; i < start.cols(); ++i) start.col(i) = walked[static_cast<std::size_t>(i)];
+  const Surface surface = test::make_surface(kGroove);
+  for (const double spacing : {0.1, 0.05, 0.02}) {
+    const FlowOptions options{.spacing = spacing, .lattice = {.size = 0.025, .origin = Eigen::Vector3d(-2, -2, -2)}};
+    const FlowResult result = correct_flow(surface, start, options);
+    ASSERT_EQ(result.status, Status::ok) << spacing << ": " << result.reason;
+    EXPECT_LE(result.summary.longest_interval, spacing * (1 + 1e-6));
+    EXPECT_NEAR(result.length, truth, result.length_error) << spacing;
+    EXPECT_LT(result.length_error, 2e-3) << spacing;
   }
 }
 
