@@ -26,6 +26,10 @@ constexpr double kMostShift = 1e6;  // a step that long in time is too long for 
 constexpr double kNoisyBound = 1e-4;  // |k_g| length
 constexpr double kNoisyEvenness = 1e-4;
 constexpr double kNoisyOffSurface = 1e-6;
+// Nodes creep round a bend as sharp as an interval without end. On a curve that is straight within the surface that is
+// no harm: their places are no part of the answer, and how long intervals are is looked at apart.
+constexpr double kCreepingUnevenness = 1;
+constexpr double kCreepingOffSurface = 1e-5;
 constexpr double kRankMargin = 1e-10;
 // A step s along the tangent plane leaves the surface by about s^2 / (2 r). One that leaves it by more than this part
 // of s, or turns a node's normal by more than the angle of this cosine, has lost the sheet it started on.
@@ -311,6 +315,10 @@ FlowState FlowSolver::relax(FlowCurve start, double bound) {
     }
     if (out_of_work() || !(explicit_step ? step_explicitly(nodes) : step_implicitly(nodes))) break;
   }
+  const double noise = curvature_noise(on_surface, mean * widths_.minCoeff());
+  const bool only_creeps = repose.geodesic_curvature <= std::max(bound, noise) &&
+                           repose.unevenness < kCreepingUnevenness && off <= kCreepingOffSurface * mean;
+  if (only_creeps) state.outcome = FlowOutcome::at_rest;
   if (state.outcome != FlowOutcome::at_rest && out_of_work()) state.outcome = FlowOutcome::out_of_work;
   if (state.outcome != FlowOutcome::at_rest && options_.curvature_bound == 0) {
     // Stopped by the noise of F (a smoothed fit carries 1e-10 of its size)? Then what is left is small all the same.

@@ -191,7 +191,7 @@ TEST(FlowInsertion, ANarrowGrooveIsFollowedToItsBottom) {
   Points start(3, static_cast<Index>(walked.size()));
   for (Index i = 0; i < start.cols(); ++i) start.col(i) = walked[static_cast<std::size_t>(i)];
   const Surface surface = test::make_surface(kGroove);
-  for (const double spacing : {0.1, 0.05, 0.02}) {
+  for (const double spacing : {0.1, 0.05, 0.03}) {
     const FlowOptions options{.spacing = spacing, .lattice = {.size = 0.025, .origin = Eigen::Vector3d(-2, -2, -2)}};
     const FlowResult result = correct_flow(surface, start, options);
     ASSERT_EQ(result.status, Status::ok) << spacing << ": " << result.reason;
