@@ -74,7 +74,6 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
         unsolved = way.length;
         why = chain.why;
       }
-      context_.tell(fmt::format("way {:.6g}: {}", way.length, chain.why));
       continue;
     }
     best = std::min(best, chain.length);
