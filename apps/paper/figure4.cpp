@@ -64,7 +64,7 @@ void draw_panel(Drawing& drawing, double left, const GapFilling& filling, const 
   for (const auto& [p, name, aside] : {std::tuple{kLeft, "A", 10.0}, {kRight, "B", -23.0}}) {
     const Eigen::Vector2d at = see(p.x(), p.z());
     drawing.add(Disc{.centre = at, .radius = 6});
-    drawing.add(TextLine{.at = at + Eigen::Vector2d(aside, 6), .text = name, .size = 17, .bold = true});
+    drawing.add(TextLine{.at = at + Eigen::Vector2d(aside, -8), .text = name, .size = 17, .bold = true});
   }
   drawing.add(TextLine{.at = {left, 32}, .text = title, .size = 16, .anchor = TextAnchor::middle, .bold = true});
 }
