@@ -21,7 +21,6 @@
 #include <numbers>
 #include <utility>
 
-#include "core/parallel.hpp"
 #include "curve/polyline.hpp"
 
 namespace taut::detail {
@@ -34,6 +33,7 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 /// Relative to the model: stops closer than this are one; conditions hold within it.
 constexpr double kTogether = 1e-9;
 constexpr double kOnEdge = 1e-9;
+constexpr double kOffFace = 1e-8;  // an arc leaves its face where it is farther outside
 /// A corner's angles may be short of pi by this, radians; tangents agree within this.
 constexpr double kAngleSlack = 1e-7;
 constexpr int kMostRounds = 60;
@@ -73,7 +73,7 @@ class Shortener {
   [[nodiscard]] bool go_round(std::size_t i);
   [[nodiscard]] bool follow_edges();
   [[nodiscard]] bool stay_on_face(std::size_t i, bool& changed);
-  [[nodiscard]] double pressed(int edge, const Point3& x, const Point3& along);
+  [[nodiscard]] double pressed(int edge, const Point3& x);
   void erase_stop(std::size_t i, int face);
   [[nodiscard]] bool fail(std::string why) {
     c_.why = std::move(why);
@@ -737,7 +737,7 @@ bool Shortener::go_round(std::size_t i) {
 /// How much the length falls when a path along the edge is moved off it, the same on both sides: the geodesic
 /// curvatures of the edge towards the faces; at most 0 where it is pressed against the edge. On a border the free
 /// side's.
-double Shortener::pressed(int e, const Point3& x, const Point3& along) {
+double Shortener::pressed(int e, const Point3& x) {
   const SharpEdge edge = s_.edge(e);
   const Point3 kappa = s_.curvature(e, x);
   double sum = 0;
@@ -749,7 +749,6 @@ double Shortener::pressed(int e, const Point3& x, const Point3& along) {
     Point3 inwards = wedge.normal.cross(ray);
     sum += kappa.dot(inwards);
   }
-  (void)along;
   return sum;
 }
 
@@ -767,7 +766,7 @@ bool Shortener::follow_edges() {
       Point3 x = arc.points.col(j);
       if (s_.project(edge.a, {edge.condition}, x)) marks.push_back(x);
     }
-    if (marks.size() < 2 || pressed(a.edge, marks[marks.size() / 2], b.x - a.x) > 1e-9 / s_.scale) continue;
+    if (marks.size() < 2 || pressed(a.edge, marks[marks.size() / 2]) > 1e-9 / s_.scale) continue;
     ChainArc along;
     along.edge = a.edge;
     along.start.resize(3, static_cast<Index>(marks.size()));
@@ -787,7 +786,7 @@ bool Shortener::stay_on_face(std::size_t i, bool& changed) {
   Index first = -1;
   Index last = -1;
   double deepest = 0;
-  const double slack = std::max(1e-8 * s_.scale, 0.0);
+  const double slack = kOffFace * s_.scale;
   std::vector<int> condition(static_cast<std::size_t>(line.cols()), -1);
   for (Index j = 0; j < line.cols(); ++j) {
     Point3 x = line.col(j);
@@ -879,7 +878,7 @@ bool Shortener::stay_on_face(std::size_t i, bool& changed) {
   if (edge < 0) return fail("a path leaves its face where no edge is known");
   const SharpEdge over = s_.edge(edge);
   const int other = over.a == face ? over.b : over.a;
-  const bool follows = other < 0 || pressed(edge, middle, b - a) <= 1e-9 / s_.scale;
+  const bool follows = other < 0 || pressed(edge, middle) <= 1e-9 / s_.scale;
   const auto at = static_cast<std::ptrdiff_t>(i);
   // Next to a crossing of the same edge, the path comes to the edge, or leaves it, on the face beyond.
   const auto crosses = [&](std::size_t stop) {
@@ -1053,7 +1052,6 @@ void Shortener::run() {
     c_.error += arc.error;
     shortest = shortest && arc.shortest;
   }
-  bool contacts = false;
   for (std::size_t i = 1; i + 1 < c_.stops.size(); ++i) {
     const ChainStop& stop = c_.stops[i];
     const ChainArc& before = c_.arcs[i - 1];
@@ -1065,7 +1063,6 @@ void Shortener::run() {
         return;
       }
     } else if (stop.kind == Kind::contact) {
-      contacts = true;
       if ((before.last - after.first).norm() > 1e-5) {
         c_.why = "the path does not meet an edge that it follows along it";
         return;
@@ -1079,13 +1076,12 @@ void Shortener::run() {
     if (arc.face >= 0) continue;
     for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const auto j = static_cast<Index>(u * static_cast<double>(arc.points.cols() - 1));
-      if (pressed(arc.edge, arc.points.col(j), arc.first) > 1e-6 / s_.scale) {
+      if (pressed(arc.edge, arc.points.col(j)) > 1e-6 / s_.scale) {
         c_.why = "the path is not pressed against an edge that it follows";
         return;
       }
     }
   }
-  (void)contacts;
   c_.solved = true;
   c_.locally_shortest = shortest && !(hessian_least_ < -1e-9 / s_.scale);
 }

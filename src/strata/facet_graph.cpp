@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -17,7 +18,6 @@
 #include <set>
 #include <utility>
 
-#include "core/disjoint_sets.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 

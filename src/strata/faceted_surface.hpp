@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "surface/formula/kinks.hpp"
@@ -65,7 +66,7 @@ class FacetedSurface {
   [[nodiscard]] int num_conditions() const { return num_kinks_ + num_domain_; }
   /// Kinks, then the components of the domain.
   [[nodiscard]] int num_kinks() const { return num_kinks_; }
-  /// True where some condition may change its sign within the box, by bounds; all true where there are none.
+  /// The conditions that may change their sign within the box, by bounds; all where there are none.
   void undecided(const Box& box, std::vector<int>& found);
 
   /// The face whose sides hold at x, on the surface or not.
