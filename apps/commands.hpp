@@ -22,6 +22,12 @@ struct CommonArguments {
 Run add_path_command(CLI::App& app);
 Run add_field_command(CLI::App& app);
 Run add_exp_command(CLI::App& app);
+Run add_log_command(CLI::App& app);
+Run add_transport_command(CLI::App& app);
+Run add_matrix_command(CLI::App& app);
+Run add_sample_command(CLI::App& app);
+Run add_voronoi_command(CLI::App& app);
+Run add_mean_command(CLI::App& app);
 Run add_fit_command(CLI::App& app);
 Run add_mesh_command(CLI::App& app);
 Run add_info_command(CLI::App& app);

@@ -21,6 +21,7 @@
 #include "taut/core/error.hpp"
 #include "taut/io/csv_rows.hpp"
 #include "taut/query/ray.hpp"
+#include "vector_text.hpp"
 
 namespace taut::app {
 namespace {
@@ -40,10 +41,6 @@ struct ExpArguments {
   DeliveryArguments delivery;
 };
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
-
 Json ray_json(const Surface& surface, const RayResult& result, double asked, double seconds) {
   Json json;
   json["command"] = "exp";
@@ -56,9 +53,9 @@ Json ray_json(const Surface& surface, const RayResult& result, double asked, dou
   json["length"] = result.length;
   json["length_asked"] = asked;
   json["converged"] = result.status == Status::ok;
-  json["error"] = number(result.error);
-  json["direction_error"] = number(result.direction_error);
-  json["amplification"] = number(result.amplification);
+  json["error"] = number_json(result.error);
+  json["direction_error"] = number_json(result.direction_error);
+  json["amplification"] = number_json(result.amplification);
   json["conjugate_at"] = result.conjugate_at ? Json(*result.conjugate_at) : Json(nullptr);
   json["conjugate_searched"] = result.conjugate_searched;
   json["index"] = result.conjugate_searched != 0 ? Json(result.index) : Json(nullptr);
@@ -69,17 +66,10 @@ Json ray_json(const Surface& surface, const RayResult& result, double asked, dou
   return json;
 }
 
-std::string coordinates(const VectorIn& x) {
-  constexpr Index kShown = 10;
-  std::string text;
-  for (Index i = 0; i < std::min(x.size(), kShown); ++i) text += fmt::format("{}{:.15g}", i > 0 ? "," : "", x(i));
-  return x.size() > kShown ? text + fmt::format(",... ({} coordinates)", x.size()) : text;
-}
-
 std::vector<SceneFact> ray_facts(const RayResult& result) {
   std::vector<SceneFact> facts;
-  facts.push_back({"point", fmt::format("{} +- {:.1e}", coordinates(result.point), result.error)});
-  facts.push_back({"direction", fmt::format("{} +- {:.1e}", coordinates(result.direction), result.direction_error)});
+  facts.push_back({"point", fmt::format("{} +- {:.1e}", vector_text(result.point), result.error)});
+  facts.push_back({"direction", fmt::format("{} +- {:.1e}", vector_text(result.direction), result.direction_error)});
   facts.push_back({"length", fmt::format("{:.15g}", result.length)});
   std::string status(to_string(result.status));
   if (!result.message.empty()) status += ": " + result.message;

@@ -34,6 +34,7 @@ struct FieldArguments {
   CommonArguments common;
   SurfaceArguments surface;
   std::vector<std::string> from;
+  std::vector<std::string> from_curves;  // files
   std::string at;
   FieldOptions options;
   std::optional<double> tolerance;  // of exact distances
@@ -44,8 +45,11 @@ struct FieldArguments {
   std::string isolines;
   FileArguments files;
 
-  [[nodiscard]] DistanceOptions distance_options(bool paths) const {
-    return {.tolerance = tolerance.value_or(DistanceOptions{}.tolerance),
+  /// Surfaces that stand for data are no smoother than C^2, and no more exact than the data: 1e-6 is enough for them,
+  /// and several times as quick as 1e-9.
+  [[nodiscard]] DistanceOptions distance_options(const Surface& loaded, bool paths) const {
+    constexpr double kForData = 1e-6;
+    return {.tolerance = tolerance.value_or(loaded.kind() == "formula" ? DistanceOptions{}.tolerance : kForData),
             .max_distance = max_distance,
             .grid = options.grid,
             .cell = options.cell,
@@ -63,6 +67,20 @@ Points parse_sources(const std::vector<std::string>& texts, const Surface& surfa
   return sources;
 }
 
+/// Distances from the sources, or the curves, as asked for.
+DistanceSolver make_solver(const FieldArguments& arguments, const Surface& surface, const Points& sources, bool paths,
+                           const Context& context) {
+  if (arguments.from_curves.empty()) return {surface, sources, {}, arguments.distance_options(surface, paths), context};
+  std::vector<Points> curves;
+  for (const std::string& file : arguments.from_curves) {
+    curves.push_back(read_points(file_or_stdin(file), surface.dim(), context));
+    if (curves.back().cols() < 2) throw InvalidArgument(file + ": a curve takes two points or more");
+  }
+  DistanceSolver solver(surface, curves.front().col(0), {}, arguments.distance_options(surface, false), context);
+  solver.set_curves(curves);
+  return solver;
+}
+
 /// ",x,y,z"
 std::string columns(const Points& vectors, Index j) {
   std::string text;
@@ -70,12 +88,13 @@ std::string columns(const Points& vectors, Index j) {
   return text;
 }
 
-/// "distance,error", and with --directions "source,departure1,...,arrival1,...".
-std::string header_line(Index dim, bool directions) {
+/// "distance,error", and with --directions "source,departure1,...,arrival1,...", of curves "foot1,..." before them.
+std::string header_line(Index dim, bool directions, bool curves) {
   std::string line = "distance,error";
   if (directions) {
     line += ",source";
-    for (const char* name : {"departure", "arrival"}) {
+    for (const char* name : {"foot", "departure", "arrival"}) {
+      if (name[0] == 'f' && !curves) continue;
       for (Index c = 1; c <= dim; ++c) line += fmt::format(",{}{}", name, c);
     }
   }
@@ -86,11 +105,12 @@ std::string header_line(Index dim, bool directions) {
 ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, const Points& sources,
                       const Context& context) {
   const Points at = read_points(file_or_stdin(arguments.at), surface.dim(), context);
-  DistanceSolver solver(surface, sources, {}, arguments.distance_options(true), context);
+  DistanceSolver solver = make_solver(arguments, surface, sources, true, context);
+  const bool curves = !arguments.from_curves.empty();
   const Distances found = solver.at(at);
   clear_progress();
   BatchErrors errors(arguments.at == "-" ? "standard input" : arguments.at);
-  std::string lines = arguments.header ? header_line(surface.dim(), arguments.directions) : "";
+  std::string lines = arguments.header ? header_line(surface.dim(), arguments.directions, curves) : "";
   for (Index j = 0; j < at.cols(); ++j) {
     const auto i = static_cast<std::size_t>(j);
     const bool ok = found.status[i] == Status::ok;
@@ -99,7 +119,8 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
     lines +=
         fmt::format("{},{}", unknown ? std::numeric_limits<double>::quiet_NaN() : found.distance(j), found.error(j));
     if (arguments.directions) {
-      lines += fmt::format(",{}{}{}", found.source[i], columns(found.departure, j), columns(found.arrival, j));
+      lines += fmt::format(",{}{}{}{}", found.source[i], curves ? columns(found.foot, j) : "",
+                           columns(found.departure, j), columns(found.arrival, j));
     }
     lines += '\n';
   }
@@ -108,7 +129,7 @@ ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, c
   if (solver.has_fan() && by_path > 0) {
     context.tell(
         fmt::format("{} of {} distances are the shortest of corrected paths: not all geodesics could be "
-                    "followed as far (creases, singular points, or the budget)",
+                    "followed as far (borders, creases, singular points, or the budget)",
                     grouped(by_path), grouped(at.cols())));
   }
   return errors.any() ? kSomeLinesFailed : kDone;
@@ -138,8 +159,9 @@ std::vector<double> parse_levels(const std::string& text, const Vector& values) 
 }
 
 /// Puts exact distances in the place of marched ones at the vertices, as far as all geodesics can be followed, and the
-/// estimated errors beside them (NaN = marched). Returns how many.
-Index make_exact(DistanceSolver& solver, SurfaceMesh& mesh) {
+/// estimated errors beside them (NaN = marched). Marches do not start from curves: then nothing stays. Returns how
+/// many.
+Index make_exact(DistanceSolver& solver, SurfaceMesh& mesh, bool keep_marched) {
   const Distances exact = solver.at(mesh.vertices);
   VertexScalar error{"error", Vector::Constant(mesh.vertices.cols(), std::numeric_limits<double>::quiet_NaN())};
   Index count = 0;
@@ -149,7 +171,7 @@ Index make_exact(DistanceSolver& solver, SurfaceMesh& mesh) {
       mesh.scalars.front().values(v) = exact.distance(v);
       error.values(v) = exact.error(v);
       ++count;
-    } else if (exact.status[i] == Status::ok || exact.status[i] == Status::disconnected) {
+    } else if (exact.status[i] == Status::ok || exact.status[i] == Status::disconnected || !keep_marched) {
       mesh.scalars.front().values(v) = std::numeric_limits<double>::quiet_NaN();  // beyond --max-distance, or apart
     }
   }
@@ -162,6 +184,12 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
     throw UsageError(
         "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
   }
+  if (arguments.from.empty() == arguments.from_curves.empty()) {
+    throw UsageError("give --from, or --from-curve (see taut field --help)");
+  }
+  if (!arguments.from_curves.empty() && arguments.grid_only) {
+    throw UsageError("--grid-only marches from points, not from --from-curve");
+  }
   if (!arguments.at.empty() && (arguments.grid_only || !arguments.isolines.empty())) {
     throw UsageError("--grid-only and --isolines go with --out, not with --at");
   }
@@ -173,6 +201,7 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
   if (!arguments.at.empty()) {
     refuse_without_effect(command, {"--march", "--envelope"}, "distances --at points are exact, not marched");
   } else if (command.count("--march") + command.count("--envelope") > 0) {
+    refuse_without_effect(command, {"--from-curve"}, "distances are marched from points only");
     arguments.grid_only = true;  // asked for by name: what that march says, nothing better
   }
   if (arguments.grid_only) refuse_without_effect(command, {"--tol"}, "marched distances are as exact as the cells");
@@ -182,7 +211,7 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
   const Context context = terminal_context(arguments.common.terminal);
   const Surface surface = load_surface(arguments.surface, context);
   arguments.options.seeds = read_seeds(arguments.surface, surface, arguments.options.grid, context);
-  const Points sources = parse_sources(arguments.from, surface);
+  Points sources = parse_sources(arguments.from, surface);
   if (!arguments.at.empty()) return distances_at(arguments, surface, sources, context);
   if (surface.dim() != 3 || surface.codim() != 1) {
     throw InvalidArgument(
@@ -191,10 +220,12 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
                     surface.dim(), surface.codim(), surface.codim() == 1 ? "" : "s"));
   }
   tell_lost_distances(arguments.files.out, context);
+  DistanceSolver solver = make_solver(arguments, surface, sources, false, context);
+  const bool curves = !arguments.from_curves.empty();
+  if (curves) sources = solver.sources();
   FieldResult field = marched_field(surface, sources, arguments.options, context);
-  DistanceSolver solver(surface, sources, {}, arguments.distance_options(false), context);
   const bool exact = !arguments.grid_only && solver.has_fan();
-  const Index num_exact = exact ? make_exact(solver, field.mesh) : 0;
+  const Index num_exact = exact ? make_exact(solver, field.mesh, !curves) : 0;
   std::optional<Polylines> isolines;
   if (!arguments.isolines.empty()) {
     const Vector& values = field.mesh.scalars.front().values;
@@ -235,7 +266,10 @@ Run add_field_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("field", "distances from a source to everywhere");
   arguments->surface.add_to(command);
   command.add_option("--from", arguments->from, "a source: 1,0,0 or @17 (repeatable: the nearest one counts)")
-      ->required()
+      ->allow_extra_args(false);
+  command
+      .add_option("--from-curve", arguments->from_curves,
+                  "a curve as source, a point a line: the shortest paths from each to the next (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--at", arguments->at,
                      "points, one a line, - = stdin: writes distance,error for each, exact to --tol");
@@ -249,7 +283,9 @@ Run add_field_command(CLI::App& app) {
   command.add_option("--isolines", arguments->isolines,
                      "lines of equal distance: how many, or their distances (0.5,1,2). Pictures show them on the "
                      "surface, other files hold them alone");
-  command.add_option("--tol", arguments->tolerance, "relative tolerance of exact distances (default: 1e-9)")
+  command
+      .add_option("--tol", arguments->tolerance,
+                  "relative tolerance of exact distances (default: 1e-9 on formulas, 1e-6 on surfaces fitted to data)")
       ->check(number_between(1e-13, 1e-3));
   command.add_flag("--header", arguments->header, "with --at: a first line with the columns' names");
   add_cell_options(command, arguments->options.cell, arguments->options.grid);

@@ -329,6 +329,7 @@ std::string picture_title(const std::string& surface) {
 }
 
 void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
+  constexpr Index kMostLabels = 12;  // more than so many marks are shown without words
   std::optional<Scene> scene;
   for (const std::string& file : files.out) {
     const std::string extension = extension_of(file);
@@ -349,8 +350,9 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
       if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines));
+      const bool few = output.marks.cols() <= kMostLabels;
       for (Index j = 0; j < output.marks.cols(); ++j) {
-        scene->points.push_back({.position = output.marks.col(j), .label = "source"});
+        scene->points.push_back({.position = output.marks.col(j), .label = few ? "source" : ""});
       }
     }
     write_picture(file, extension, *scene);

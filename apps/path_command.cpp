@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <vector>
@@ -25,6 +24,7 @@
 #include "path_via.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
+#include "surface_request.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/verify.hpp"
 #include "taut/query/path.hpp"
@@ -164,25 +164,10 @@ ExitCode run_in_class(const PathArguments& arguments, const Surface& surface, co
   return deliver(path);
 }
 
-/// All that says which surface it is.
-std::string surface_text(const SurfaceArguments& arguments) {
-  constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
-  std::string text = fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {}", arguments.surface, arguments.dim.value_or(0), arguments.variables,
-      fmt::join(arguments.parameters, " "), fmt::join(arguments.domain, " "), arguments.box, arguments.samples,
-      static_cast<int>(arguments.fit.method), arguments.fit.smoothing.value_or(-1), arguments.fit.max_samples,
-      arguments.fit.support_radius, arguments.volume.iso.value_or(kUnset), arguments.volume.label.value_or(kUnset),
-      arguments.volume.grid_name);
-  if (!names_a_file(arguments.surface)) return text;
-  std::error_code ignored;
-  const auto time = std::filesystem::last_write_time(arguments.surface, ignored).time_since_epoch().count();
-  return text + fmt::format(" {}", time);
-}
-
 ExitCode run_pairs(const PathArguments& arguments, const Surface& surface, const Context& context) {
   PairsRequest request{.file = arguments.pairs,
                        .out = {},
-                       .surface = surface_text(arguments.surface),
+                       .surface = surface_request(arguments.surface),
                        .options = arguments.options,
                        .columns = arguments.columns,
                        .header = arguments.header};

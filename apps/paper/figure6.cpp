@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "cell_faces.hpp"
-#include "farthest_points.hpp"
 #include "models.hpp"
 #include "parts.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/march/march.hpp"
+#include "taut/query/farthest_points.hpp"
 #include "taut/query/field.hpp"
 #include "taut/query/path.hpp"
 #include "taut/surface/projection.hpp"

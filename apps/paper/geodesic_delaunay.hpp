@@ -1,7 +1,7 @@
 #pragma once
 
-#include "farthest_points.hpp"
 #include "taut/cells/mesh_surface.hpp"
+#include "taut/query/farthest_points.hpp"
 
 namespace taut::paper {
 

@@ -9,11 +9,11 @@
 #include <numbers>
 
 #include "applications.hpp"
-#include "farthest_points.hpp"
 #include "models.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
+#include "taut/query/farthest_points.hpp"
 #include "taut/query/surface_mesh.hpp"
 #include "taut/surface/formula.hpp"
 

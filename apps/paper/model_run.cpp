@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "farthest_points.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/surface_cells.hpp"
+#include "taut/query/farthest_points.hpp"
 
 namespace taut::paper {
 namespace {

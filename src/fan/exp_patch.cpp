@@ -70,9 +70,13 @@ bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, doubl
     const double db = p.along.dot(r) / tt;
     const double miss_across = std::abs(er) / std::sqrt(ee + least);
     if (miss_across * std::abs(da) <= kEnough * patch.step && std::abs(db) < kClose) {
-      if (std::abs(alpha + da) > 1 + kRim || std::abs(beta + db) > 1 + kRim) return false;
-      const double length = patch.length + half_step * (beta + db + 1);
-      if (length < 0) return false;  // beside a source: the ray the other way
+      if (std::abs(alpha + da) > 1 + patch.rim || std::abs(beta + db) > 1 + kRim) return false;
+      double length = patch.length + half_step * (beta + db + 1);
+      if (length < 0) {
+        // At a source it is the ray the other way. On a curve rounding decides to which side a point belongs.
+        if (!patch.beside_curve || length < -kEnough * patch.step) return false;
+        length = 0;
+      }
       // What is left must be rounding off the surface, not a point that the fold of a caustic keeps out of reach.
       const Eigen::Vector3d rest = r - db * p.along - da * p.across;
       const double allowed = 1e-9 * patch.step + 10 * patch.error;

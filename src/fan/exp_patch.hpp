@@ -29,6 +29,9 @@ struct ExpPatch {
   double value;
   double error;  ///< of the distances it gives, model units
   std::int32_t source;
+  double rim;         ///< what |alpha| may be beyond 1
+  bool beside_curve;  ///< it begins at a curve: rays do not meet there
+  bool astray;        ///< some of its rays have left the surface's domain, on it or before
 };
 
 /// Where a patch's map meets a point.

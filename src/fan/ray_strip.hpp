@@ -44,6 +44,10 @@ struct RayStrip {
   double error = 0;          ///< what interpolation and steps may have done to the lengths so far, model units
   double interpolation = 0;  ///< error of the last panel's interpolation across the rays, model units
   std::int64_t parent = -1;  ///< the patch it came out of
+  /// How far beside the strip its panels count, in half widths: rounding must leave no gap between neighbours. Beyond
+  /// the end of a curve a ray would begin nowhere, so less there.
+  double rim = 1e-3;
+  bool astray = false;  ///< some of its rays have left the surface's domain on the way
 
   [[nodiscard]] double distance() const { return value + length; }
   /// Width at the widest ray, model units.

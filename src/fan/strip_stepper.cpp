@@ -24,6 +24,24 @@ constexpr double kLeastTurn = 0.5;
 constexpr double kCheckAlpha[] = {-1, -0.38, 0.38, 1};
 constexpr double kCheckBeta[] = {-0.55, 0.1, 0.72};
 
+/// The last coefficients of a series, the last one first, and how fast they fall.
+struct Tail {
+  Tail(double a, double b, double c, double d)
+      : size(std::max(a, 0.3 * b)), decay(std::sqrt(std::max(a, b) / std::max({c, d, a, b, 1e-300}))) {}
+  double size;
+  double decay;  ///< from one coefficient to the next, at most 1
+
+  /// The coefficients that the series does not have, if they go on falling so.
+  [[nodiscard]] double left_out() const {
+    constexpr double kSlowest = 0.8;  // beyond, the function is not smooth enough for this to mean anything
+    const double q = std::min(decay, kSlowest);
+    return size * q / (1 - q);
+  }
+  /// Of the end of a step. Gauss collocation leaves a defect that is orthogonal to kStages polynomials there, of which
+  /// two derivatives have been taken.
+  [[nodiscard]] double left_at_end() const { return size * kStages * kStages * std::pow(decay, kStages); }
+};
+
 }  // namespace
 
 StripStepper::StripStepper(const Surface& surface)
@@ -31,7 +49,12 @@ StripStepper::StripStepper(const Surface& surface)
       value_(kNodes),
       gradient_(3 * kNodes),
       hessian_(9 * kNodes),
-      weight_(kNodes, 1.0) {}
+      weight_(kNodes, 1.0) {
+  if (surface.domain() == nullptr) return;
+  domain_ = surface.domain()->make_evaluator();
+  domain_codim_ = surface.domain()->codim();
+  margin_.resize(static_cast<std::size_t>(domain_codim_) * kNodes);
+}
 
 bool StripStepper::evaluate(Index n, const double* x) {
   num_evaluated += n;
@@ -94,6 +117,30 @@ RayStrip StripStepper::start(const Eigen::Vector3d& x, const Eigen::Vector3d& n,
   return strip;
 }
 
+RayStrip StripStepper::start_beside(const SpectralCurve& curve, double middle, double half, int side) {
+  const PanelBasis& basis = PanelBasis::tables();
+  RayStrip strip;
+  strip.angle = -side * middle;
+  strip.half = half;
+  for (int i = 0; i < kRays; ++i) {
+    const double t = -side * (strip.angle + half * basis.ray(i));
+    strip.x.segment<3>(3 * i) = curve.point(t);
+    const Eigen::Vector3d along = curve.velocity(t);
+    strip.v.segment<3>(3 * i) = along;
+    strip.jacobi(i) = along.norm();
+  }
+  (void)settle_ends(strip.x, strip.v, strip.acceleration, strip.normal);
+  for (int i = 0; i < kRays; ++i) {
+    const Eigen::Vector3d normal = strip.normal.segment<3>(3 * i);
+    const Eigen::Vector3d along = strip.v.segment<3>(3 * i);
+    strip.v.segment<3>(3 * i) = side * normal.cross(along);
+  }
+  (void)settle_ends(strip.x, strip.v, strip.acceleration, strip.normal);
+  strip.rim = 1e-6;
+  strip.slope.setZero();  // a geodesic does not bend: neighbouring rays leave it parallel
+  return strip;
+}
+
 StripStepper::Verdict StripStepper::attempt(const RayStrip& strip, double step, double tolerance) {
   const PanelBasis& basis = PanelBasis::tables();
   step_ = step;
@@ -145,7 +192,9 @@ StripStepper::Verdict StripStepper::attempt(const RayStrip& strip, double step, 
     by_ray(column).noalias() = by_ray(values) * basis.ray_series.transpose();
     series_.col(n) = column;
   }
-  return check(strip) ? Verdict::good : Verdict::diverged;
+  if (!check(strip)) return Verdict::diverged;
+  look_at_domain();
+  return Verdict::good;
 }
 
 /// Gaussian curvature at the nodes, K = (H(e, e) H(v, v) - H(e, v)^2) / |g|^2 with e = n x v, and the Jacobi fields.
@@ -188,20 +237,24 @@ void StripStepper::follow_fields(const RayStrip& strip) {
 
 bool StripStepper::check(const RayStrip& strip) {
   const PanelBasis& basis = PanelBasis::tables();
-  // The error left out is about the next coefficient; coefficients of one parity may vanish, so two of them count.
-  double last = 0;
-  double before = 0;
-  for (int n = 0; n < kSeries; ++n) {
-    last += series_.col(n).segment<3>(3 * (kRays - 1)).norm();
-    before += series_.col(n).segment<3>(3 * (kRays - 2)).norm();
-  }
-  error_across = std::max(last, 0.3 * before);
-  last = before = 0;
-  for (int m = 0; m < kRays; ++m) {
-    last += series_.col(kSeries - 1).segment<3>(3 * m).norm();
-    before += series_.col(kSeries - 2).segment<3>(3 * m).norm();
-  }
-  error_along = std::max(last, 0.3 * before);
+  // Coefficients of one parity may vanish, so two of them count; how they fall tells what is left out.
+  const auto across = [&](int m) {
+    double sum = 0;
+    for (int n = 0; n < kSeries; ++n) sum += series_.col(n).segment<3>(3 * m).norm();
+    return sum;
+  };
+  const auto along = [&](int n) {
+    double sum = 0;
+    for (int m = 0; m < kRays; ++m) sum += series_.col(n).segment<3>(3 * m).norm();
+    return sum;
+  };
+  const Tail tail_across(across(kRays - 1), across(kRays - 2), across(kRays - 3), across(kRays - 4));
+  const Tail tail_along(along(kSeries - 1), along(kSeries - 2), along(kSeries - 3), along(kSeries - 4));
+  error_across = tail_across.size;
+  error_along = tail_along.size;
+  left_across_ = tail_across.left_out();
+  left_along_ = tail_along.left_out();
+  left_at_end_ = std::min(tail_along.size, tail_along.left_at_end());
   width = 2 * strip.half *
           std::max({strip.jacobi.abs().maxCoeff(), fields_.abs().maxCoeff(), end_jacobi_.abs().maxCoeff()});
 
@@ -248,6 +301,28 @@ bool StripStepper::check(const RayStrip& strip) {
   return std::isfinite(mismatch + error_across + error_along + off_surface + width);
 }
 
+/// Which of the rays have left the domain.
+void StripStepper::look_at_domain() {
+  inside = true;
+  gone = false;
+  if (!domain_) return;
+  const auto count_outside = [&](Index n, const double* x) {
+    domain_->evaluate({.n = n, .x = x, .value = margin_.data()});
+    Index count = 0;
+    for (Index i = 0; i < n; ++i) {
+      bool outside = false;
+      for (Index c = 0; c < domain_codim_; ++c) {
+        outside = outside || !(margin_[static_cast<std::size_t>(i * domain_codim_ + c)] >= 0);
+      }
+      count += outside ? 1 : 0;
+    }
+    return count;
+  };
+  const Index at_end = count_outside(kRays, end_x_.data());
+  gone = at_end == kRays;
+  inside = at_end == 0 && count_outside(kNodes, x_.data()) == 0;
+}
+
 std::pair<PatchFrame, ExpPatch> StripStepper::patch(const RayStrip& strip) const {
   const PanelBasis& basis = PanelBasis::tables();
   ExpPatch patch{.series = series_,
@@ -256,8 +331,11 @@ std::pair<PatchFrame, ExpPatch> StripStepper::patch(const RayStrip& strip) const
                  .length = strip.length,
                  .step = step_,
                  .value = strip.value,
-                 .error = strip.error + error_along + error_across + off_surface,
-                 .source = static_cast<std::int32_t>(strip.source)};
+                 .error = strip.error + left_along_ + left_across_ + off_surface,
+                 .source = static_cast<std::int32_t>(strip.source),
+                 .rim = strip.rim,
+                 .beside_curve = strip.length == 0 && strip.slope.abs().maxCoeff() == 0,
+                 .astray = strip.astray || !inside};
   PatchFrame frame;
   frame.start = strip.distance();
   // x and its derivatives in the middle: T_n(0) = 1, 0, -1, 0, ..., T_n'(0) = 0, n, 0, -n, ...
@@ -327,8 +405,9 @@ void StripStepper::arrive(RayStrip& strip) const {
   strip.slope = end_slope_;
   strip.series.noalias() = a_.lazyProduct(PanelBasis::tables().to_legendre);
   strip.last_step = step_;
-  strip.interpolation = error_across;
-  strip.error += error_along;
+  strip.astray = strip.astray || !inside;
+  strip.interpolation = left_across_;
+  strip.error += left_at_end_ + shift_;
 }
 
 bool StripStepper::split(const RayStrip& strip, RayStrip& lower, RayStrip& upper) {

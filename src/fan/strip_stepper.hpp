@@ -7,6 +7,7 @@
 
 #include "fan/exp_patch.hpp"
 #include "fan/ray_strip.hpp"
+#include "taut/curve/spectral_curve.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {
@@ -30,11 +31,17 @@ class StripStepper {
   double mismatch = 0;      ///< of d x / d alpha: what interpolation says against what the Jacobi fields say
   double off_surface = 0;   ///< |F| / |g| between the nodes
   double width = 0;         ///< of the widest part
+  bool inside = true;       ///< all nodes lie in the surface's domain
+  bool gone = false;        ///< all rays end outside of it
   Index num_evaluated = 0;  ///< points, since the beginning
 
   /// The rays of source `x`, with n its unit normal and t a unit tangent, at arc length 0.
   [[nodiscard]] RayStrip start(const Eigen::Vector3d& x, const Eigen::Vector3d& n, const Eigen::Vector3d& t,
                                double angle, double half);
+  /// The rays that leave a geodesic at right angles, at parameters middle - half .. middle + half, to its left seen
+  /// from outside (side 1) or to its right (-1). The strip's "angle" is the parameter, with its sign changed on the
+  /// left, so that Jacobi fields are positive on both sides.
+  [[nodiscard]] RayStrip start_beside(const SpectralCurve& curve, double middle, double half, int side);
   /// Positions are sought to `tolerance`, model units.
   [[nodiscard]] Verdict attempt(const RayStrip& strip, double step, double tolerance);
   /// After a good attempt: the patch, and the strip at its end.
@@ -58,8 +65,12 @@ class StripStepper {
   bool settle_ends(RayVectors& x, RayVectors& v, RayVectors& a, RayVectors& n);
   void follow_fields(const RayStrip& strip);
   bool check(const RayStrip& strip);
+  void look_at_domain();
 
   std::unique_ptr<Evaluator> evaluator_;
+  std::unique_ptr<Evaluator> domain_;  // null: the surface has no border
+  Index domain_codim_ = 0;
+  std::vector<double> margin_;
   std::vector<double> value_, gradient_, hessian_, weight_;
   double step_ = 0;
   RaySeries a_, x_, v_, normals_;
@@ -69,6 +80,8 @@ class StripStepper {
   Eigen::Array<double, kRays, kStages> fields_;
   Eigen::Matrix<double, 3 * kRays, kSeries> series_;
   double shift_ = 0;  // of the ends onto the surface
+  // What of the errors is left in the panel's series, and at its end.
+  double left_along_ = 0, left_across_ = 0, left_at_end_ = 0;
 };
 
 }  // namespace taut::detail

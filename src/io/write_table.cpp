@@ -3,6 +3,7 @@
 #include <string>
 
 #include "io/geometry.hpp"
+#include "taut/io/write_npy_header.hpp"
 
 namespace taut::detail {
 namespace {
@@ -63,13 +64,7 @@ void write_xyz(OutputFile& out, const Geometry& geometry) {
 }
 
 void write_npy(OutputFile& out, const PointsIn& points) {
-  constexpr std::size_t kAlignment = 64;
-  std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(points.cols()) + ", " +
-                       std::to_string(points.rows()) + "), }";
-  header.resize((header.size() + 11 + kAlignment - 1) / kAlignment * kAlignment - 11, ' ');
-  out.write(std::string_view("\x93NUMPY\x01\0", 8));
-  out.write({std::string{static_cast<char>((header.size() + 1) & 0xFF), static_cast<char>((header.size() + 1) >> 8)}});
-  out.write(header + "\n");
+  write_npy_header(out, {points.cols(), points.rows()});
   for (Index j = 0; j < points.cols(); ++j) {
     for (Index i = 0; i < points.rows(); ++i) write_raw(out, points(i, j));
   }

@@ -7,7 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "core/parallel.hpp"
 #include "query/cell_levels.hpp"
+#include "query/fan_answers.hpp"
+#include "query/polished.hpp"
 #include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 #include "taut/fan/geodesic_fan.hpp"
@@ -19,12 +22,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Longest and widest panel of a fan, in cells: its nodes are then closer than the cells that are known to follow the
-/// surface.
-constexpr double kPanelCells = 8;
-/// The fan is grown beyond the straight distance to the farthest target by this, and again while any is not reached.
-constexpr double kBeyondStraight = 1.1;
-constexpr double kGrowth = 1.4;
 /// A target farther off the surface than so many cells is a mistake.
 constexpr double kMostCellsOff = 10;
 
@@ -48,24 +45,28 @@ struct DistanceSolver::Impl {
   Vector values;
   detail::CellLevels levels;
   Points sources;
+  std::vector<FanCurve> curves;  // empty: the sources are points
   std::optional<GeodesicFan> fan;
   std::optional<PathSolver> paths;
 
   Impl(Surface s, const DistanceOptions& o, Context c)
       : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, {o.grid, o.cell, o.seeds}, context) {}
 
-  /// A fan follows rays on surfaces in R^3 that have no border.
-  [[nodiscard]] bool has_fan() const {
-    return surface.dim() == 3 && surface.codim() == 1 && surface.domain() == nullptr;
-  }
+  /// A fan follows rays on surfaces in R^3.
+  [[nodiscard]] bool has_fan() const { return surface.dim() == 3 && surface.codim() == 1; }
 
   void make_fan() {
     if (!has_fan() || fan) return;
     (void)levels.cells(0, sources);  // finds the size that follows the surface's bends
-    fan.emplace(surface, sources, values,
-                FanOptions{.tolerance = options.tolerance,
-                           .max_panel = kPanelCells * levels.size(0),
-                           .max_patches = options.max_patches});
+    const FanOptions wanted{.tolerance = options.tolerance,
+                            .max_panel = detail::kPanelCells * levels.size(0),
+                            .max_patches = options.max_patches,
+                            .max_evaluated = detail::most_evaluated(surface)};
+    if (curves.empty()) {
+      fan.emplace(surface, sources, values, wanted);
+    } else {
+      fan.emplace(surface, curves, wanted);
+    }
   }
 
   /// The targets on the surface; what is wrong with one goes to its status and message.
@@ -87,48 +88,31 @@ struct DistanceSolver::Impl {
 
   /// Distances on the fan for the columns `open`; those that are proved leave the list.
   void ask_fan(const Points& x, std::vector<Index>& open, Distances& result) {
-    double straight = 0;
-    for (const Index j : open) {
-      double nearest = kInfinity;
-      for (Index s = 0; s < sources.cols(); ++s) {
-        nearest = std::min(nearest, values(s) + (x.col(j) - sources.col(s)).norm());
+    Points targets(3, static_cast<Index>(open.size()));
+    for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);
+    const std::vector<detail::FanAnswer> answers =
+        detail::ask_fan(*fan, surface, sources, values, targets, options.max_distance, context);
+    std::vector<Index> left;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      const Index j = open[i];
+      const std::size_t slot = static_cast<std::size_t>(j);
+      const bool beyond = answers[i].kind == detail::FanAnswer::Kind::beyond;
+      if (std::isfinite(answers[i].hit.distance) && !beyond) take(j, answers[i].hit, result);
+      if (answers[i].kind == detail::FanAnswer::Kind::open) {
+        left.push_back(j);
+        continue;
       }
-      straight = std::max(straight, nearest);
+      result.status[slot] = Status::ok;
+      result.proof[slot] = beyond ? DistanceProof::none : DistanceProof::fan;
     }
-    double goal = kBeyondStraight * straight;
-    while (!open.empty()) {
-      fan->extend(std::min(goal, options.max_distance), context);
-      goal = std::max(kGrowth * goal, straight);
-      Points targets(3, static_cast<Index>(open.size()));
-      for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);
-      const std::vector<FanHit> hits = fan->locate(targets, context);
-      const double reach = fan->reach();
-      std::vector<Index> left;
-      for (std::size_t i = 0; i < hits.size(); ++i) {
-        const Index j = open[i];
-        const FanHit& hit = hits[i];
-        if (std::isfinite(hit.distance)) take(j, hit, result);
-        const bool known = std::isfinite(hit.distance) && hit.distance <= reach;
-        // Without a limit, what no geodesic of a complete fan meets is left to drop_disconnected and ask_paths.
-        const bool beyond =
-            std::isfinite(options.max_distance) && std::min(hit.distance, reach) >= options.max_distance;
-        if (known || beyond) {
-          if (beyond) forget(j, result);
-          result.status[static_cast<std::size_t>(j)] = Status::ok;
-          result.proof[static_cast<std::size_t>(j)] = beyond ? DistanceProof::none : DistanceProof::fan;
-        } else {
-          left.push_back(j);
-        }
-      }
-      open = std::move(left);
-      if (fan->finished() || fan->broken_at() <= reach) break;
-    }
+    open = std::move(left);
   }
 
   static void take(Index j, const FanHit& hit, Distances& result) {
     result.distance(j) = hit.distance;
     result.error(j) = hit.error;
     result.source[static_cast<std::size_t>(j)] = static_cast<std::int32_t>(hit.source);
+    result.foot.col(j) = hit.foot;
     result.departure.col(j) = hit.departure;
     result.arrival.col(j) = hit.arrival;
   }
@@ -136,6 +120,7 @@ struct DistanceSolver::Impl {
   static void forget(Index j, Distances& result) {
     result.distance(j) = result.error(j) = kInfinity;
     result.source[static_cast<std::size_t>(j)] = -1;
+    result.foot.col(j).setConstant(kNaN);
     result.departure.col(j).setConstant(kNaN);
     result.arrival.col(j).setConstant(kNaN);
   }
@@ -164,7 +149,7 @@ struct DistanceSolver::Impl {
 
   /// A corrected path to each of the columns `open` from each source; the best of them and of what the fan has.
   void ask_paths(const Points& x, const std::vector<Index>& open, Distances& result) {
-    if (!options.paths) {
+    if (!options.paths || !curves.empty()) {
       for (const Index j : open) {
         forget(j, result);
         result.status[static_cast<std::size_t>(j)] = Status::not_converged;
@@ -174,21 +159,25 @@ struct DistanceSolver::Impl {
       return;
     }
     if (open.empty()) return;
-    if (!paths) {
-      paths.emplace(surface,
-                    PathOptions{.march = options.march,
-                                .grid = options.grid,
-                                .cell = options.cell,
-                                .seeds = options.seeds,
-                                .tolerance = options.tolerance},
-                    context);
-    }
+    need_paths();
     Points targets(x.rows(), static_cast<Index>(open.size()));
     for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);
+    std::vector<Way> ways(open.size());  // the shortest path so far
     for (Index s = 0; s < sources.cols(); ++s) {
-      const std::vector<PathResult> found = paths->solve_from(sources.col(s), targets);
-      for (std::size_t i = 0; i < open.size(); ++i) take(open[i], s, found[i], result);
+      std::vector<PathResult> found;
+      if (surface.kind() == "formula" && surface.domain() != nullptr) {
+        // One by one, paths follow the border where that is the way; over one marched field they do not.
+        for (Index i = 0; i < targets.cols(); ++i) found.push_back(paths->solve(sources.col(s), targets.col(i)));
+      } else {
+        found = paths->solve_from(sources.col(s), targets);
+      }
+      for (std::size_t i = 0; i < open.size(); ++i) {
+        if (take(open[i], s, found[i], result)) {
+          ways[i] = {std::move(found[i].points), found[i].start_direction, found[i].pieces.size() > 1};
+        }
+      }
     }
+    find_directions(open, ways, result);
     for (const Index j : open) {
       const std::size_t i = static_cast<std::size_t>(j);
       if (!std::isfinite(result.distance(j))) continue;
@@ -202,7 +191,40 @@ struct DistanceSolver::Impl {
     }
   }
 
-  void take(Index j, Index source, const PathResult& path, Distances& result) const {
+  void need_paths() {
+    if (paths) return;
+    paths.emplace(surface,
+                  PathOptions{.march = options.march,
+                              .grid = options.grid,
+                              .cell = options.cell,
+                              .seeds = options.seeds,
+                              .tolerance = options.tolerance},
+                  context);
+  }
+
+  /// The shortest paths from each point of a polyline to the next, on the surface.
+  [[nodiscard]] FanCurve make_curve(const PointsIn& polyline) {
+    FanCurve curve;
+    need_paths();
+    paths->expect(polyline, polyline.cols() - 1);
+    for (Index i = 0; i + 1 < polyline.cols(); ++i) {
+      const PathResult path = paths->solve(polyline.col(i), polyline.col(i + 1));
+      if (path.status != Status::ok) {
+        throw InvalidArgument(fmt::format("no path from point {} of the curve to the next: {}", i, path.message));
+      }
+      if (path.pieces.size() > 1) {
+        throw InvalidArgument(fmt::format("the curve goes over an edge between its points {} and {}", i, i + 1));
+      }
+      if (!(path.length > 0)) continue;
+      const NewtonResult fine = detail::polished(surface, path.points, context);
+      curve.arcs.push_back(fine.curve);
+    }
+    if (curve.arcs.empty()) throw InvalidArgument("a curve to measure from takes two distinct points");
+    return curve;
+  }
+
+  /// True where the path is the shortest so far.
+  [[nodiscard]] bool take(Index j, Index source, const PathResult& path, Distances& result) const {
     const std::size_t i = static_cast<std::size_t>(j);
     const double length = values(source) + path.length;
     if (path.status != Status::ok) {
@@ -210,38 +232,104 @@ struct DistanceSolver::Impl {
         result.status[i] = path.status;
         result.message[j] = path.message;
       }
-      return;
+      return false;
     }
-    if (!(length < result.distance(j))) return;
+    if (!(length < result.distance(j))) return false;
     result.distance(j) = length;
     result.error(j) = path.length_error;
     result.source[i] = static_cast<std::int32_t>(source);
-    const Index last = path.points.cols() - 1;
-    const bool moved = last > 0 && path.length > 0;
-    result.departure.col(j).setConstant(kNaN);
-    result.arrival.col(j).setConstant(kNaN);
-    if (path.start_direction.size() == x_dim()) result.departure.col(j) = path.start_direction;
-    if (moved) result.arrival.col(j) = (path.points.col(last) - path.points.col(last - 1)).normalized();
+    result.foot.col(j) = sources.col(source);
+    return true;
   }
 
-  [[nodiscard]] Index x_dim() const { return surface.dim(); }
+  struct Way {
+    Points points;
+    Vector start;  // direction
+    bool over_edges = false;
+  };
+
+  /// A path that is good for its length is not for its directions: those come from a curve that is as exact as
+  /// rounding allows.
+  void find_directions(const std::vector<Index>& open, const std::vector<Way>& ways, Distances& result) const {
+    constexpr Index kGrain = 8;
+    detail::parallel_for(context, 0, static_cast<Index>(open.size()), kGrain, [&](Index begin, Index end) {
+      Context own = context;
+      own.threads = 1;
+      for (Index k = begin; k < end; ++k) {
+        const std::size_t i = static_cast<std::size_t>(k);
+        const Points& points = ways[i].points;
+        const Index last = points.cols() - 1;
+        if (last < 1) continue;
+        const Index j = open[i];
+        result.departure.col(j).setConstant(kNaN);
+        result.arrival.col(j).setConstant(kNaN);
+        if ((points.colwise() - points.col(0)).cwiseAbs().maxCoeff() == 0) continue;
+        if (ways[i].over_edges) {
+          if (ways[i].start.size() == surface.dim()) result.departure.col(j) = ways[i].start;
+          result.arrival.col(j) = (points.col(last) - points.col(last - 1)).normalized();
+          continue;
+        }
+        const NewtonResult fine = detail::polished(surface, points, own);
+        if (fine.curve.num_elements() == 0) continue;
+        const detail::EndDirections ends = detail::end_directions(surface, fine, own);
+        result.departure.col(j) = ends.departure;
+        result.arrival.col(j) = ends.arrival;
+      }
+    });
+  }
 };
 
 DistanceSolver::DistanceSolver(Surface surface, const PointsIn& sources, const Vector& values,
                                const DistanceOptions& options, Context context) {
   check(options);
+  impl_ = std::make_unique<Impl>(std::move(surface), options, std::move(context));
+  set_sources(sources, values);
+}
+
+void DistanceSolver::set_sources(const PointsIn& sources, const Vector& values) {
+  Impl& impl = *impl_;
   if (sources.cols() == 0) throw InvalidArgument("distances need at least one source");
   if (values.size() != 0 && values.size() != sources.cols()) {
     throw InvalidArgument(fmt::format("{} sources have {} values: give one each", sources.cols(), values.size()));
   }
   if (!values.allFinite()) throw InvalidArgument("the values of sources must be finite");
-  for (Index j = 0; j < sources.cols(); ++j) detail::check_point(surface, sources.col(j), "source");
-  impl_ = std::make_unique<Impl>(std::move(surface), options, std::move(context));
-  Impl& impl = *impl_;
-  impl.values = values.size() > 0 ? values : Vector(Vector::Zero(sources.cols()));
+  for (Index j = 0; j < sources.cols(); ++j) detail::check_point(impl.surface, sources.col(j), "source");
   impl.levels.prepare(sources);
-  impl.sources.resize(sources.rows(), sources.cols());
-  for (Index j = 0; j < sources.cols(); ++j) impl.sources.col(j) = impl.levels.on_surface(sources.col(j), "source");
+  Points on_surface(sources.rows(), sources.cols());
+  for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = impl.levels.on_surface(sources.col(j), "source");
+  impl.fan.reset();
+  impl.curves.clear();
+  impl.values = values.size() > 0 ? values : Vector(Vector::Zero(sources.cols()));
+  impl.sources = std::move(on_surface);
+}
+
+void DistanceSolver::set_curves(const std::vector<Points>& polylines) {
+  Impl& impl = *impl_;
+  if (!impl.has_fan()) {
+    throw InvalidArgument("distances from curves are for surfaces in 3 dimensions without a border");
+  }
+  if (polylines.empty()) throw InvalidArgument("distances need at least one curve");
+  std::vector<FanCurve> curves;
+  Index count = 0;
+  for (const Points& polyline : polylines) {
+    if (polyline.rows() != 3 || polyline.cols() < 2) {
+      throw InvalidArgument(
+          fmt::format("a curve ({} x {}) to measure from: must be 3 x n, n >= 2", polyline.rows(), polyline.cols()));
+    }
+    curves.push_back(impl.make_curve(polyline));
+    count += static_cast<Index>(curves.back().arcs.size()) + 1;
+  }
+  Points joints(3, count);
+  Index next = 0;
+  for (const FanCurve& curve : curves) {
+    for (const SpectralCurve& arc : curve.arcs) joints.col(next++) = arc.point(0);
+    joints.col(next++) = curve.arcs.back().point(curve.arcs.back().period());
+  }
+  impl.levels.prepare(joints);
+  impl.fan.reset();
+  impl.curves = std::move(curves);
+  impl.values = Vector::Zero(count);
+  impl.sources = std::move(joints);
 }
 
 DistanceSolver::~DistanceSolver() = default;
@@ -267,6 +355,7 @@ Distances DistanceSolver::at(const PointsIn& targets) {
                    .status = std::vector<Status>(count, Status::ok),
                    .proof = std::vector<DistanceProof>(count, DistanceProof::none),
                    .source = std::vector<std::int32_t>(count, -1),
+                   .foot = Points::Constant(d, n, kNaN),
                    .departure = Points::Constant(d, n, kNaN),
                    .arrival = Points::Constant(d, n, kNaN),
                    .message = {}};

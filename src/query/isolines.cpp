@@ -7,55 +7,12 @@
 #include <unordered_map>
 #include <utility>
 
+#include "query/chains.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut {
 namespace {
-
-/// Segments of one level between crossed edges, put together to lines.
-class Chains {
- public:
-  /// A segment from the point on edge a to the point on edge b.
-  void join(Index a, Index b) {
-    resize(std::max(a, b));
-    next_[at(a)] = b;
-    previous_[at(b)] = a;
-  }
-
-  /// The edges of each line in order; a closed one repeats its first.
-  [[nodiscard]] std::vector<std::vector<Index>> lines() const {
-    std::vector<std::vector<Index>> result;
-    std::vector<std::uint8_t> seen(next_.size(), 0);
-    const auto follow = [&](Index first) {
-      std::vector<Index> line;
-      for (Index e = first; e >= 0; e = next_[at(e)]) {
-        line.push_back(e);
-        if (seen[at(e)] != 0) break;  // once round
-        seen[at(e)] = 1;
-      }
-      result.push_back(std::move(line));
-    };
-    const Index n = static_cast<Index>(next_.size());
-    for (Index e = 0; e < n; ++e) {  // open ones from their beginnings
-      if (previous_[at(e)] < 0 && next_[at(e)] >= 0) follow(e);
-    }
-    for (Index e = 0; e < n; ++e) {
-      if (seen[at(e)] == 0 && next_[at(e)] >= 0) follow(e);
-    }
-    return result;
-  }
-
- private:
-  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  void resize(Index most) {
-    if (at(most) < next_.size()) return;
-    next_.resize(at(most) + 1, -1);
-    previous_.resize(at(most) + 1, -1);
-  }
-
-  std::vector<Index> next_, previous_;
-};
 
 void add_level(const TriangleMesh& mesh, const Vector& values, double level, Polylines& lines,
                std::vector<double>& levels_of) {
@@ -68,7 +25,7 @@ void add_level(const TriangleMesh& mesh, const Vector& values, double level, Pol
     if (fresh) edges.push_back({low, high});
     return place->second;
   };
-  Chains chains;
+  detail::Chains chains;
   for (Index f = 0; f < mesh.faces.cols(); ++f) {
     // Round a face that the level cuts the value falls below it across one edge and rises above it across another.
     Index falls = -1;

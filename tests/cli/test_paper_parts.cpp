@@ -12,7 +12,6 @@
 #include "chart.hpp"
 #include "classical_mds.hpp"
 #include "drawing.hpp"
-#include "farthest_points.hpp"
 #include "geodesic_delaunay.hpp"
 #include "inertia.hpp"
 #include "isomap.hpp"
@@ -21,6 +20,7 @@
 #include "rolled_sheet.hpp"
 #include "table.hpp"
 #include "taut/cells/subdivide.hpp"
+#include "taut/query/farthest_points.hpp"
 #include "taut/surface/formula.hpp"
 #include "winding_pattern.hpp"
 

@@ -58,7 +58,7 @@ TEST(GeodesicFan, GivesTheAngleOnTheUnitSphereEverywhere) {
   const GeodesicFan fan = whole_fan(sphere, p, {.max_panel = 0.5});
   EXPECT_TRUE(fan.finished());
   EXPECT_EQ(fan.reach(), kInfinity);
-  EXPECT_EQ(fan.broken_at(), kInfinity);
+  EXPECT_FALSE(fan.broken());
   Points targets = random_points(sphere, 2000, 1, 1);
   targets.col(0) = -p;  // all rays meet there
   targets.col(1) = p;
@@ -223,9 +223,13 @@ TEST(GeodesicFan, SaysHowFarItIsCompleteWhereThereAreCreases) {
   const Surface cube = parse_surface("max(abs(x),abs(y),abs(z))=1");
   GeodesicFan fan = fan_from(cube, Eigen::Vector3d(0.2, 0.1, 1), {.max_panel = 0.25});
   fan.extend(3);
-  EXPECT_NEAR(fan.broken_at(), 0.8, 1e-3);  // the nearest edge
-  EXPECT_LE(fan.broken_at(), 0.8);
-  EXPECT_EQ(fan.reach(), fan.broken_at());
+  EXPECT_TRUE(fan.broken());
+  const auto bound = [&](double x, double y) { return fan.bound(Eigen::Vector3d(x, y, 1)); };
+  EXPECT_NEAR(bound(1, 0.1), 0.8, 2e-3);  // on the nearest edge
+  EXPECT_LE(bound(1, 0.1), 0.8);
+  // To the edge x = 1 and back: by its mirror image.
+  EXPECT_NEAR(bound(0.2, 0.1), 1.6, 1e-2);
+  EXPECT_LE(bound(0.2, 0.1), 1.6);
   EXPECT_NEAR(fan.locate(Vector(Eigen::Vector3d(-0.4, -0.3, 1))).front().distance, std::hypot(0.6, 0.4), 1e-12);
 }
 

@@ -133,7 +133,113 @@ TEST(DistanceSolver, FallsBackOnPathsInMoreDimensionsAndInsideDomains) {
   const Distances on_half =
       DistanceSolver(half, Vector(Eigen::Vector3d(0.8, 0, 0.6))).at(Vector(Eigen::Vector3d(0, 0.8, 0.6)));
   EXPECT_NEAR(on_half.distance(0), std::acos(0.36), 1e-9);
-  EXPECT_EQ(on_half.proof[0], DistanceProof::path);
+  EXPECT_EQ(on_half.proof[0], DistanceProof::fan) << "the shortest way of all stays inside";
+}
+
+/// A ray that leaves the domain is no way: round the hole it is tangents and part of the rim.
+TEST(DistanceSolver, DoesNotCutAcrossBorders) {
+  const Surface pierced = parse_surface("x^2+y^2+z^2=1", {.domain = {"x <= 0.9"}});
+  const Eigen::Vector3d p(0.8, 0.6, 0);
+  DistanceSolver solver(pierced, Vector(p));
+  Points targets(3, 3);
+  targets << 0.8, 0.8, -0.6, -0.6, 0, -0.8, 0, 0.6, 0;
+  const Distances u = solver.at(targets);
+  const double rim = std::acos(0.9);
+  // A point at cos(angle) = c from the middle of the hole: how far its tangent point, and round the hole to it.
+  const auto tangent = [&](double c) { return std::acos(c / 0.9); };
+  const auto beside = [&](double c) { return std::acos(std::tan(rim) / std::tan(std::acos(c))); };
+  for (const Index j : {0, 2}) {  // opposite, seen from the middle of the hole
+    const std::size_t i = static_cast<std::size_t>(j);
+    const double c = targets(0, j);
+    EXPECT_NE(u.proof[i], DistanceProof::fan);
+    EXPECT_EQ(u.status[i], Status::ok);
+    EXPECT_NEAR(u.distance(j), tangent(0.8) + tangent(c) + std::sin(rim) * (pi - beside(0.8) - beside(c)), 1e-9);
+  }
+  EXPECT_EQ(u.status[1], Status::ok);  // free of the hole
+  EXPECT_NEAR(u.distance(1), std::acos(p.dot(targets.col(1))), 1e-9);
+}
+
+/// From an arc of the equator of the sphere, and round a spherical triangle: closed forms for both sides, the corners
+/// and the ends.
+TEST(DistanceSolver, MeasuresFromCurves) {
+  const Surface sphere = test::unit_sphere();
+  DistanceSolver solver(sphere, Vector(Eigen::Vector3d(1, 0, 0)));
+  Points arc(3, 3);
+  arc << 1, std::sqrt(0.5), 0, 0, std::sqrt(0.5), 1, 0, 0, 0;
+  solver.set_curves({arc});
+  const Points targets = random_points(sphere, 300, 1, 7);
+  const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  };
+  const auto from_arc = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& q) {
+    const Eigen::Vector3d pole = a.cross(b).normalized();
+    const Eigen::Vector3d foot = (q - pole * pole.dot(q)).normalized();
+    const bool inside = a.cross(foot).dot(pole) > 0 && foot.cross(b).dot(pole) > 0;
+    return inside ? std::abs(std::asin(pole.dot(q))) : std::min(angle(a, q), angle(b, q));
+  };
+  Distances u = solver.at(targets);
+  for (Index j = 0; j < targets.cols(); ++j) {
+    const std::size_t i = static_cast<std::size_t>(j);
+    ASSERT_EQ(u.proof[i], DistanceProof::fan) << u.message[j];
+    EXPECT_NEAR(u.distance(j), from_arc(arc.col(0), arc.col(2), targets.col(j)), 1e-10);
+    EXPECT_EQ(u.source[i], 0);
+    EXPECT_NEAR(angle(u.foot.col(j), targets.col(j)), u.distance(j), 1e-9);
+  }
+  EXPECT_NEAR(solver.at(arc).distance.maxCoeff(), 0, 1e-13);
+
+  const Points corners = (Points(3, 4) << 1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0).finished();
+  const Points other = (Points(3, 2) << -1, 0, 0, -1, 0, 0).finished();
+  solver.set_curves({corners, other});
+  u = solver.at(targets);
+  for (Index j = 0; j < targets.cols(); ++j) {
+    const std::size_t i = static_cast<std::size_t>(j);
+    double triangle = kInfinity;
+    for (Index c = 0; c < 3; ++c) {
+      triangle = std::min(triangle, from_arc(corners.col(c), corners.col(c + 1), targets.col(j)));
+    }
+    const double second = from_arc(other.col(0), other.col(1), targets.col(j));
+    EXPECT_NEAR(u.distance(j), std::min(triangle, second), 1e-10);
+    if (std::abs(triangle - second) > 1e-9) {
+      EXPECT_EQ(u.source[i], triangle < second ? 0 : 1);
+    }
+  }
+}
+
+/// A curve of many points close together, on a torus: never above the distance from its points, and 1-Lipschitz.
+TEST(DistanceSolver, MeasuresFromDenseCurves) {
+  const Surface torus = test::torus(1, 0.4);
+  constexpr Index kPoints = 60;
+  Points curve(3, kPoints);
+  for (Index i = 0; i < kPoints; ++i) {
+    const double t = 2 * pi * static_cast<double>(i) / (kPoints - 1);
+    const double theta = 0.8 * std::sin(2 * t);
+    curve.col(i) << (1 + 0.4 * std::cos(theta)) * std::cos(t), (1 + 0.4 * std::cos(theta)) * std::sin(t),
+        0.4 * std::sin(theta);
+  }
+  curve.col(kPoints - 1) = curve.col(0);
+  DistanceSolver solver(torus, curve.col(0));
+  const Points targets = random_points(torus, 200, 1.4, 8);
+  solver.set_sources(curve);
+  const Distances from_points = solver.at(targets);
+  solver.set_curves({curve});
+  const Distances from_curve = solver.at(targets);
+  for (Index j = 0; j < targets.cols(); ++j) {
+    ASSERT_EQ(from_curve.proof[static_cast<std::size_t>(j)], DistanceProof::fan);
+    EXPECT_LE(from_curve.distance(j), from_points.distance(j) + 1e-9);
+    EXPECT_GE(from_curve.distance(j), from_points.distance(j) - 0.1) << "points lie at most 0.19 apart";
+    // The ray at its foot stands at a right angle to the curve, or leaves a corner.
+    const Distances at_foot = solver.at(from_curve.foot.col(j));
+    EXPECT_LT(at_foot.distance(0), 1e-9);
+  }
+}
+
+TEST(DistanceSolver, RefusesWrongCurves) {
+  DistanceSolver solver(test::unit_sphere(), Vector(Eigen::Vector3d(1, 0, 0)));
+  EXPECT_THROW(solver.set_curves({}), InvalidArgument);
+  EXPECT_THROW(solver.set_curves({Points(Points::Identity(3, 1))}), InvalidArgument);
+  EXPECT_THROW(solver.set_curves({Points(Vector(Eigen::Vector3d(1, 0, 0)).replicate(1, 2))}), InvalidArgument);
+  DistanceSolver many(test::unit_sphere(4), Vector(Vector::Unit(4, 0)));
+  EXPECT_THROW(many.set_curves({Points(Points::Identity(4, 2))}), InvalidArgument);
 }
 
 TEST(DistanceSolver, RefusesWrongRequests) {

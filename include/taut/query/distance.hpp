@@ -42,9 +42,11 @@ struct Distances {
   Vector error;                      ///< n: estimated error of `distance`, model units; infinity where there is none
   std::vector<Status> status;        ///< n: ok, disconnected, ...; ok beyond `max_distance`
   std::vector<DistanceProof> proof;  ///< n
-  std::vector<std::int32_t> source;  ///< n: column of the nearest source; -1 where there is none
-  Points departure;                  ///< d x n: unit tangent at the source, NaN where there is none
-  Points arrival;  ///< d x n: unit tangent at the target, direction of travel, NaN where there is none
+  std::vector<std::int32_t>
+      source;   ///< n: column of the nearest source, or number of the curve; -1 where there is none
+  Points foot;  ///< d x n: where the geodesic leaves it: the source, or the nearest point of the curve; NaN likewise
+  Points departure;  ///< d x n: unit tangent at the source, NaN where there is none
+  Points arrival;    ///< d x n: unit tangent at the target, direction of travel, NaN where there is none
   std::map<Index, std::string> message;  ///< why a target has no distance, in one sentence
 };
 
@@ -69,8 +71,19 @@ class DistanceSolver {
   /// sources; the same from the other end; the same bits for any number of threads.
   [[nodiscard]] Distances at(const PointsIn& targets);
 
+  /// Other sources, as in the constructor: the cells and what paths need are kept. Answers do not depend on earlier
+  /// sources beyond their errors.
+  void set_sources(const PointsIn& sources, const Vector& values = {});
+
+  /// Curves as sources instead: each of `polylines` (3 x n, n >= 2, projected) stands for the shortest paths from each
+  /// of its points to the next; one whose last point is its first is closed. Distances are exact for this geodesic
+  /// polygon. Only by the fan: where rays cannot be followed a target is not_converged. Throws InvalidArgument where
+  /// there is no fan (`has_fan`), for a polyline of less than two distinct points, and where no path joins two of them.
+  void set_curves(const std::vector<Points>& polylines);
+
   [[nodiscard]] const Surface& surface() const;
-  [[nodiscard]] const Points& sources() const;  ///< d x m, on the surface
+  /// d x m, on the surface; of curves their points.
+  [[nodiscard]] const Points& sources() const;
   /// Are rays followed at all: surfaces in R^3 without a domain.
   [[nodiscard]] bool has_fan() const;
   [[nodiscard]] Index num_patches() const;  ///< of the fan so far

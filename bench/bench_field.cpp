@@ -1,0 +1,129 @@
+// Distances from one source to every vertex of a mesh: Taut's fan against CGAL's heat method and exact polyhedral
+// distances, in one run, one thread.
+//
+//   bench_field OPPONENT_FIELD [VERTICES] [polyhedral]
+//
+// OPPONENT_FIELD: the program of that name. VERTICES: about how many a mesh has (default 25,000). The meshes are Taut's
+// own, their vertices exactly on the surface. Prints a Markdown table: seconds cold (Taut: cells, fan and all targets;
+// heat: factorization and one field), seconds of the next field on the same mesh (Taut: another source), errors
+// relative to the farthest distance against Taut's, and Taut's own error against closed forms or a tolerance of 1e-13.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "taut/io/write_geometry.hpp"
+#include "taut/query/distance.hpp"
+#include "taut/query/surface_mesh.hpp"
+#include "taut/surface/formula.hpp"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using taut::Index;
+using taut::Vector;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+struct Case {
+  const char* name;
+  const char* formula;
+  double cell25;  // gives about 25,000 vertices
+};
+
+constexpr Case kCases[] = {{"sphere", "x^2+y^2+z^2=1", 0.0277},
+                           {"ellipsoid 1:1:0.5", "x^2+y^2+4z^2=1", 0.0232},
+                           {"triaxial 3:2:1", "x^2/9+y^2/4+z^2=1", 0.0548},
+                           {"torus 1, 0.4", "(x^2+y^2+z^2+1-0.16)^2=4*(x^2+y^2)", 0.0311},
+                           {"tangle cube", "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 0.0776}};
+
+struct Opponent {
+  double cold = std::nan("");
+  double next = std::nan("");
+  double mean = std::nan("");
+  double most = std::nan("");
+};
+
+Opponent ask(const std::string& program, const std::string& mesh, Index source, const std::string& method,
+             const Vector& truth, const std::filesystem::path& folder) {
+  Opponent result;
+  const std::string out = (folder / "distances").string();
+  const std::string times = (folder / "times").string();
+  const std::string command =
+      program + " " + mesh + " " + std::to_string(source) + " " + method + " " + out + " > " + times;
+  if (std::system(command.c_str()) != 0) return result;
+  double prepared = 0;
+  double solved = 0;
+  std::ifstream(times) >> prepared >> solved;
+  result.cold = method == "heat" ? prepared : prepared + solved;
+  result.next = method == "heat" ? solved : prepared + solved;
+  Vector distance(truth.size());
+  std::ifstream(out, std::ios::binary)
+      .read(reinterpret_cast<char*>(distance.data()), static_cast<std::streamsize>(distance.size()) * 8);
+  const Vector off = (distance - truth).cwiseAbs() / truth.maxCoeff();
+  result.mean = off.mean();
+  result.most = off.maxCoeff();
+  return result;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::fprintf(stderr, "usage: bench_field OPPONENT_FIELD [VERTICES] [polyhedral]\n");
+    return 2;
+  }
+  const std::string program = argv[1];
+  const double vertices = argc > 2 ? std::atof(argv[2]) : 25000;
+  const bool polyhedral = argc > 3;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "taut_bench_field";
+  std::filesystem::create_directories(folder);
+  std::printf(
+      "| surface | vertices | Taut cold, s | next, s | max error | heat cold, s | next, s | mean, max error | cold "
+      "ratio%s |\n"
+      "| --- | --- | --- | --- | --- | --- | --- | --- | ---%s |\n",
+      polyhedral ? " | polyhedral, s | max error | ratio" : "", polyhedral ? " | --- | --- | ---" : "");
+  const taut::Context one{.threads = 1};
+  for (const Case& c : kCases) {
+    const taut::Surface surface = taut::parse_surface(c.formula);
+    const taut::SurfaceMesh mesh = taut::display_mesh(surface, {.cell = c.cell25 * std::sqrt(25000 / vertices)}, one);
+    const std::string file = (folder / "mesh.off").string();
+    taut::write_mesh(file, mesh);
+    const Index n = mesh.vertices.cols();
+    const Index source = n / 3;
+    double cold = 1e9;
+    double next = 1e9;
+    taut::Distances u;
+    constexpr int kRepetitions = 5;
+    for (int i = 0; i < kRepetitions; ++i) {
+      const auto start = Clock::now();
+      taut::DistanceSolver solver(surface, mesh.vertices.col(source), {}, {}, one);
+      u = solver.at(mesh.vertices);
+      cold = std::min(cold, seconds_since(start));
+      const auto again = Clock::now();
+      solver.set_sources(mesh.vertices.col(source));
+      (void)solver.at(mesh.vertices);
+      next = std::min(next, seconds_since(again));
+    }
+    taut::DistanceSolver fine(surface, mesh.vertices.col(source), {}, {.tolerance = 1e-13}, one);
+    const Vector truth = fine.at(mesh.vertices).distance;
+    const double off = ((u.distance - truth).cwiseAbs().array() / truth.array().max(1e-300)).maxCoeff();
+    const Opponent heat = ask(program, file, source, "heat", truth, folder);
+    std::printf("| %s | %ld | %.3f | %.3f | %.1e | %.3f | %.3f | %.1e, %.1e | %.1f", c.name, static_cast<long>(n), cold,
+                next, off, heat.cold, heat.next, heat.mean, heat.most, heat.cold / cold);
+    if (polyhedral) {
+      const Opponent exact = ask(program, file, source, "polyhedral", truth, folder);
+      std::printf(" | %.2f | %.1e | %.0f", exact.cold, exact.most, exact.cold / cold);
+    }
+    std::printf(" |\n");
+    std::fflush(stdout);
+  }
+  std::filesystem::remove_all(folder);
+  return 0;
+}

@@ -1,0 +1,171 @@
+// The Karcher mean by Riemannian gradient descent: the gradient of half the variance is minus the mean of the logs, and
+// DistanceSolver gives all logs at a point at once.
+
+#include "taut/query/karcher_mean.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "taut/core/error.hpp"
+#include "taut/curve/exponential_map.hpp"
+
+namespace taut {
+namespace {
+
+/// Distances and directions from one place to the points.
+struct Look {
+  Vector x;
+  bool complete = false;
+  bool converged = false;  // the gradient vanishes
+  std::string message;
+  double variance = 0;
+  Vector mean_log;
+  Vector distance;
+};
+
+class Descent {
+ public:
+  Descent(const Surface& surface, const PointsIn& points, Vector weights, const KarcherMeanOptions& options,
+          const Context& context)
+      : points_(points),
+        weights_(std::move(weights)),
+        options_(options),
+        context_(context),
+        solver_(surface, points.leftCols(1), {}, options.distance, context),
+        exponential_(surface, {.conjugate = false, .points = false}) {}
+
+  int num_iterations = 0;
+
+  [[nodiscard]] Look look(const VectorIn& x) {
+    solver_.set_sources(x);
+    const Distances u = solver_.at(points_);
+    Look seen{.x = solver_.sources().col(0), .message = {}, .mean_log = Vector::Zero(x.size()), .distance = u.distance};
+    seen.complete = true;
+    for (Index j = 0; j < points_.cols(); ++j) {
+      if (u.status[static_cast<std::size_t>(j)] != Status::ok || !std::isfinite(u.distance(j))) {
+        seen.complete = false;
+        seen.message = fmt::format("point {} has no distance: {}", j,
+                                   u.message.contains(j) ? u.message.at(j) : "beyond what was asked for");
+        return seen;
+      }
+      if (u.distance(j) == 0 || weights_(j) == 0) continue;
+      seen.variance += weights_(j) * u.distance(j) * u.distance(j);
+      seen.mean_log += weights_(j) * u.distance(j) * u.departure.col(j);
+    }
+    return seen;
+  }
+
+  /// Goes down from x until the gradient vanishes within what the distances' tolerance tells.
+  [[nodiscard]] Look follow(const VectorIn& x) {
+    Look here = look(x);
+    double step = 1;
+    for (int i = 0; here.complete && i < options_.max_iterations; ++i, ++num_iterations) {
+      const double spread = std::sqrt(here.variance);
+      const double slope = here.mean_log.norm();
+      if (!(slope > enough(spread))) {
+        here.converged = true;
+        return here;
+      }
+      const ExponentialResult ray = exponential_.trace(here.x, here.mean_log, step * slope, context_);
+      Look next = look(ray.point);
+      if (!next.complete) return next;
+      const double expected = 0.5 * step * slope * slope;
+      if (next.variance > here.variance - expected && step * slope > enough(spread)) {
+        // Rounding hides what the last steps gain: then the gradient tells.
+        const bool hidden = std::abs(next.variance - here.variance) < 1e-12 * here.variance;
+        if (!hidden || next.mean_log.norm() > slope) {
+          step /= 2;
+          if (step < 1e-6) {
+            here.converged = slope <= 1e3 * enough(spread);
+            return here;
+          }
+          continue;
+        }
+      }
+      here = std::move(next);
+      step = std::min(1.0, 2 * step);
+    }
+    return here;
+  }
+
+  [[nodiscard]] double enough(double spread) const { return options_.distance.tolerance * spread + 1e-15; }
+
+ private:
+  Points points_;
+  Vector weights_;
+  const KarcherMeanOptions& options_;
+  const Context& context_;
+  DistanceSolver solver_;
+  ExponentialMap exponential_;
+};
+
+}  // namespace
+
+KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const Vector& weights,
+                         const KarcherMeanOptions& options, const Context& context) {
+  const Index n = points.cols();
+  if (points.rows() != surface.dim() || n == 0) {
+    throw InvalidArgument(
+        fmt::format("the points ({} x {}) of a mean: must be {} x n, n >= 1", points.rows(), n, surface.dim()));
+  }
+  if (weights.size() != 0 && weights.size() != n) {
+    throw InvalidArgument(fmt::format("{} points have {} weights: give one each", n, weights.size()));
+  }
+  Vector w = weights.size() == 0 ? Vector(Vector::Ones(n)) : weights;
+  if (!w.allFinite() || w.minCoeff() < 0 || !(w.sum() > 0)) {
+    throw InvalidArgument("weights must not be negative, and not all zero");
+  }
+  if (options.max_iterations < 1) throw InvalidArgument("max_iterations must be at least 1");
+  w /= w.sum();
+  Descent descent(surface, points, w, options, context);
+  KarcherMean result;
+  constexpr int kStarts = 3;
+  std::vector<Look> found;
+  Index first = 0;
+  w.maxCoeff(&first);
+  Vector nearest = Vector::Constant(n, std::numeric_limits<double>::infinity());  // to starts and minima so far
+  for (int start = 0; start < std::min<Index>(kStarts, n); ++start) {
+    Index at = first;
+    if (start > 0) nearest.maxCoeff(&at);
+    if (start > 0 && !(nearest(at) > 0)) break;
+    const Look begin = descent.look(points.col(at));
+    const Look minimum = descent.follow(points.col(at));
+    if (!minimum.complete && start == 0) {
+      result.message = minimum.message;
+      result.point = minimum.x;
+      result.num_iterations = descent.num_iterations;
+      return result;
+    }
+    if (!minimum.complete) continue;
+    if (begin.complete) nearest = nearest.cwiseMin(begin.distance);
+    nearest = nearest.cwiseMin(minimum.distance);
+    const bool known = std::ranges::any_of(found, [&](const Look& other) {
+      return (other.x - minimum.x).norm() <= 1e-5 * std::sqrt(std::max(other.variance, minimum.variance));
+    });
+    if (!known && (start == 0 || minimum.converged)) found.push_back(minimum);
+  }
+  std::ranges::stable_sort(found, {}, &Look::variance);
+  const Look& best = found.front();
+  if (best.converged) result.status = Status::ok;
+  result.point = best.x;
+  result.variance = best.variance;
+  result.gradient = best.mean_log.norm();
+  result.distance = best.distance;
+  result.num_iterations = descent.num_iterations;
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    result.others.push_back(found[i].x);
+    if (found[i].variance <= best.variance * (1 + 1e-6)) {
+      result.unique = false;
+      result.message = "another point was found that is as good: the points lie all round the surface";
+    }
+  }
+  if (result.status != Status::ok) result.message = "the descent did not come to rest";
+  return result;
+}
+
+}  // namespace taut
