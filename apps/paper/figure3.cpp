@@ -126,13 +126,13 @@ void write_figure3(Study& study, Report& report) {
                 roll_scene(roll, paths.chains, study.context)));
   // Of the rows from cells of one size: how many came to rest, and how far off the worst of them is.
   const auto outcome = [&paths](double cell) {
-    std::pair<Index, double> outcome{0, 0};
+    std::pair<Index, double> rest{0, 0};
     for (const auto& row : paths.table.rows) {
       if (std::get<double>(row[1]) != cell || std::get<std::string>(row[6]) != to_string(Status::ok)) continue;
-      ++outcome.first;
-      outcome.second = std::max(outcome.second, std::abs(std::get<double>(row[5])));
+      ++rest.first;
+      rest.second = std::max(rest.second, std::abs(std::get<double>(row[5])));
     }
-    return outcome;
+    return rest;
   };
   const auto [coarse, coarse_error] = outcome(kCells[0]);
   const auto [fine, fine_error] = outcome(kCells[1]);

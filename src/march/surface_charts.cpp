@@ -158,13 +158,15 @@ void SurfaceCharts::fill_records(Index first, Index last) {
   const Index d = cells_.dim();
   const Index k = cells_.codim();
   const double h = cells_.grid().size();
+  // Only how cells lie to each other counts. Far from the origin their own numbers are beyond single precision.
+  const std::int32_t* base = cells_.grid().cell(0).data();
   TangentCoordinates<D, K> frame(d, k);
   for (Index i = first; i < last; ++i) {
     if (!cells_.valid(i)) continue;
     float* to = record(i);
     const std::int32_t* cell = cells_.grid().cell(i).data();
     const double* x = cells_.point(i).data();
-    for (Index a = 0; a < d; ++a) *to++ = static_cast<float>(cell[a]);
+    for (Index a = 0; a < d; ++a) *to++ = static_cast<float>(cell[a] - base[a]);
     for (Index a = 0; a < d; ++a) *to++ = static_cast<float>((x[a] - cells_.grid().face(a, cell[a])) / h);
     const auto normals = cells_.normals(i);
     for (Index n = 0; n < d * k; ++n) *to++ = static_cast<float>(normals.data()[n]);

@@ -86,6 +86,10 @@ struct PathSolver::Impl {
   [[nodiscard]] const detail::CellLevels& levels() const { return search.levels(); }
   /// The shortest path between points of the surface, whatever it is made of.
   [[nodiscard]] PathResult find(const Vector& p, const Vector& q, Corrector& corrector);
+  /// What the search for surfaces of faces, edges and borders finds; nothing where it cannot be asked.
+  [[nodiscard]] std::optional<PathResult> over_faces(const Vector& p, const Vector& q);
+  /// `found` on a smooth surface, or the path along its border where that one meets it.
+  [[nodiscard]] PathResult along_border(PathResult found);
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -139,36 +143,37 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
   return results;
 }
 
-/// On a surface with edges their search comes first: the others would follow one face beyond its end, or go round. On a
-/// smooth one that is cut, only where the path meets the border.
-PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& corrector) {
-  const bool cut = surface.domain() != nullptr;
-  if ((!kinked && !cut) || p == q) return search.find(p, q, corrector);
-  const auto over_faces = [&]() -> std::optional<PathResult> {
-    const std::scoped_lock lock(facets_turn);
-    if (!facets) facets = std::make_unique<detail::FacetSearch>(surface, options, context);
-    if (!facets->is_ready()) return std::nullopt;
-    return facets->find(p, q, levels().extent());
-  };
-  if (kinked) {
-    std::optional<PathResult> found = over_faces();
-    // There are ways, but none was made a geodesic: the search for smooth surfaces would not do better.
-    if (found && (found->status == Status::ok || found->marched > 0)) return *std::move(found);
-    PathResult other = search.find(p, q, corrector);
-    if (other.status == Status::ok && other.message.empty() && other.corrected) {
-      other.message = found ? fmt::format("a shorter path may exist: {}", found->message)
-                            : "a shorter path may exist: over the edges of this surface it is looked for by Newton's "
-                              "method on the convergent march only, and where the domain has no kinks";
-      other.rivals_sought = false;
-    }
-    return other;
-  }
-  PathResult found = search.find(p, q, corrector);
-  if (found.status != Status::left_domain && (found.status != Status::ok || found.message.empty())) return found;
-  std::optional<PathResult> other = over_faces();
+std::optional<PathResult> PathSolver::Impl::over_faces(const Vector& p, const Vector& q) {
+  const std::scoped_lock lock(facets_turn);
+  if (!facets) facets = std::make_unique<detail::FacetSearch>(surface, options, context);
+  if (!facets->is_ready()) return std::nullopt;
+  return facets->find(p, q, levels().extent());
+}
+
+PathResult PathSolver::Impl::along_border(PathResult found) {
+  const bool meets_it = found.status == Status::left_domain || (found.status == Status::ok && !found.message.empty());
+  if (surface.domain() == nullptr || !meets_it || found.from == found.to) return found;
+  std::optional<PathResult> other = over_faces(found.from, found.to);
   if (!other || other->status != Status::ok) return found;
   if (found.status == Status::ok && found.length <= other->length) return found;
   return *std::move(other);
+}
+
+/// On a surface with edges their search comes first: the others would follow one face beyond its end, or go round. On a
+/// smooth one that is cut, only where the path meets the border.
+PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& corrector) {
+  if (!kinked || p == q) return along_border(search.find(p, q, corrector));
+  std::optional<PathResult> found = over_faces(p, q);
+  // There are ways, but none was made a geodesic: the search for smooth surfaces would not do better.
+  if (found && (found->status == Status::ok || found->marched > 0)) return *std::move(found);
+  PathResult other = search.find(p, q, corrector);
+  if (other.status == Status::ok && other.message.empty() && other.corrected) {
+    other.message = found ? fmt::format("a shorter path may exist: {}", found->message)
+                          : "a shorter path may exist: over the edges of this surface it is looked for by Newton's "
+                            "method on the convergent march only, and where the domain has no kinks";
+    other.rivals_sought = false;
+  }
+  return other;
 }
 
 PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
@@ -242,7 +247,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   std::vector<PathResult> results =
       impl.for_all(targets.cols(), !ground.cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
         const Vector to = target(j);
-        return impl.search.find(from, to, corrector, starts_to(to));
+        return impl.along_border(impl.search.find(from, to, corrector, starts_to(to)));
       });
   const auto on_shared_cells = std::ranges::find_if(results, [&](const PathResult& result) {
     return result.grid_path.cols() > 0 && result.cell == ground.cells->grid().size();

@@ -26,7 +26,9 @@ TEST(EvenlySpaced, ArcLengthsConvergeFasterThanTheChords) {
   double before = 0;
   for (const Index m : {20, 40, 80}) {
     const double error = std::abs(arc_lengths(quarter(m))(m - 1) - std::numbers::pi / 2);
-    if (before > 0) EXPECT_LT(error, before / 7) << m;  // the chords' own would fall by 4
+    if (before > 0) {  // the chords' own would fall by 4
+      EXPECT_LT(error, before / 7) << m;
+    }
     before = error;
   }
   EXPECT_LT(before, 1e-7);

@@ -81,7 +81,9 @@ TEST(GapInsertion, AGapWiderThanACellIsCountedApart) {
     (void)insertion.insert(points, {true});
     EXPECT_EQ(insertion.num_projected(), 0);
     EXPECT_EQ(insertion.num_across_cells(), origin == 0.0 ? insertion.num_in_plane() : 0) << "origin " << origin;
-    if (origin != 0.0) EXPECT_EQ(insertion.num_in_plane(), 1);
+    if (origin != 0.0) {
+      EXPECT_EQ(insertion.num_in_plane(), 1);
+    }
   }
 }
 
@@ -165,7 +167,9 @@ TEST(FlowInsertion, NoIntervalIsLongerThanTheSpacingOnAFlatEllipsoid) {
     ASSERT_EQ(result.status, Status::ok) << result.reason << " at " << spacing;
     EXPECT_LE(result.summary.longest_interval, spacing * (1 + 1e-6));
     EXPECT_GT(result.summary.longest_interval, 0.4 * spacing);
-    if (coarser > 0) EXPECT_NEAR(result.length, coarser, 2e-3);
+    if (coarser > 0) {
+      EXPECT_NEAR(result.length, coarser, 2e-3);
+    }
     coarser = result.length;
   }
 }
@@ -205,7 +209,7 @@ TEST(FlowInsertion, LatticeMustHaveAnOrigin) {
   const Surface sphere = test::unit_sphere();
   Points start(3, 3);
   start << Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0.8, 0.6, 0), Eigen::Vector3d(0, 1, 0);
-  EXPECT_THROW((void)correct_flow(sphere, start, {.lattice = {.size = 0.1}}), std::exception);
+  EXPECT_THROW((void)correct_flow(sphere, start, {.lattice = {.size = 0.1, .origin = {}}}), std::exception);
 }
 
 }  // namespace

@@ -76,7 +76,9 @@ TEST(FlowSteps, ImplicitStepsTakeAnyBetaAndOnlyTheWayChanges) {
     const FlowResult result = correct_flow(test::unit_sphere(), start, {.beta = beta});
     EXPECT_EQ(result.status, Status::ok) << result.reason;
     EXPECT_NEAR(result.length, reference.length, 1e-9) << "beta = " << beta;
-    if (beta < 1e-3) EXPECT_GT(result.num_iterations, reference.num_iterations);
+    if (beta < 1e-3) {
+      EXPECT_GT(result.num_iterations, reference.num_iterations);
+    }
   }
 }
 

@@ -156,7 +156,9 @@ TEST(GeodesicFan, SeveralSourcesGiveTheLeastOfTheSingleOnesPlusTheirValues) {
     const double first = single[0][j].distance;
     const double second = single[1][j].distance + 0.3;
     EXPECT_NEAR(hits[j].distance, std::min(first, second), 1e-10);
-    if (std::abs(first - second) > 1e-9) EXPECT_EQ(hits[j].source, first < second ? 0 : 1);
+    if (std::abs(first - second) > 1e-9) {
+      EXPECT_EQ(hits[j].source, first < second ? 0 : 1);
+    }
   }
   EXPECT_LT(joint.num_patches(), patches);  // each is followed in its own part only
 }

@@ -124,7 +124,9 @@ TEST(AxisMarch, ReachesWhatHangsTogetherAndKeepsToIt) {
       EXPECT_EQ(line.col(j), grid.centre(i));
       EXPECT_GT(field.distance(i), before);
       before = field.distance(i);
-      if (j > 1) EXPECT_LE((line.col(j) - line.col(j - 1)).lpNorm<Eigen::Infinity>(), 0.15 + 1e-12);
+      if (j > 1) {
+        EXPECT_LE((line.col(j) - line.col(j - 1)).lpNorm<Eigen::Infinity>(), 0.15 + 1e-12);
+      }
     }
   }
 }

@@ -108,6 +108,29 @@ TEST_P(Properties, AFlatExtraDimensionDoesNotMatter) {
   EXPECT_NEAR(distance(parse_surface(shape.text + "; w"), p4, q4), d, kClose * d) << shape.text;
 }
 
+// Map coordinates: the cells' numbers are then beyond single precision. Rounding of F leaves some nine digits.
+TEST(FarFromTheOrigin, TheShortestWayIsTheSame) {
+  const Eigen::Vector3d shift(1e6, -2e6, 5e5);
+  const Surface here = parse_surface("x^10+y^10+z^10=1");
+  const Surface there = parse_surface("(x-1000000)^10+(y+2000000)^10+(z-500000)^10=1");
+  std::mt19937 random(4);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 6; ++i) {
+    const auto point = [&] {
+      return project_to_surface(here, Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized())
+          .point;
+    };
+    const Eigen::Vector3d p = point();
+    const Eigen::Vector3d q = point();
+    const PathResult unmoved = shortest_path(here, p, q);
+    const PathResult moved = shortest_path(there, p + shift, q + shift);
+    ASSERT_EQ(unmoved.status, Status::ok);
+    EXPECT_TRUE(moved.status != Status::ok || !moved.message.empty() ||
+                std::abs(moved.length - unmoved.length) < 1e-7 * unmoved.length)
+        << moved.length << " for " << unmoved.length;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(RandomSurfaces, Properties, testing::Range(0, kSurfaces));
 
 }  // namespace

@@ -40,6 +40,27 @@ TEST(Borders, SphereBandAlongItsEdge) {
   EXPECT_NEAR(found.length, kPi * r, 1e-10);
 }
 
+// Round the rim of a cap that is cut off: a tangent arc, the rim, a tangent arc. One source to many asks the same.
+TEST(Borders, OneSourceToManyFollowsTheRim) {
+  const Eigen::Vector3d p(0.8, 0.6, 0);
+  const Eigen::Vector3d q(-0.6, -0.8, 0);
+  const double rim = std::acos(0.9);  // angular radius of the cap about the x axis
+  const double turn =
+      kPi - std::acos(std::tan(rim) / std::tan(std::acos(p(0)))) - std::acos(std::tan(rim) / std::tan(std::acos(q(0))));
+  const double truth = std::acos(p(0) / 0.9) + std::acos(q(0) / 0.9) + turn * std::sin(rim);
+  FormulaOptions options;
+  options.dim = 3;
+  options.domain = {"x<=0.9"};
+  PathSolver solver(parse_surface("x^2+y^2+z^2=1", options));
+  Points targets(3, 2);
+  targets << q, Eigen::Vector3d(0, 1, 0);
+  const std::vector<PathResult> found = solver.solve_from(p, targets);
+  ASSERT_EQ(found[0].status, Status::ok) << found[0].message;
+  EXPECT_NEAR(found[0].length, truth, 1e-10);
+  EXPECT_NEAR(found[1].length, std::acos(0.6), 1e-11);
+  EXPECT_NEAR(solver.solve(p, q).length, truth, 1e-10);
+}
+
 TEST(Borders, WhatIsNotTouchedChangesNothing) {
   const PathResult free = path("x^2+y^2+z^2=1", {}, {1, 0, 0}, {0, 1, 0});
   const PathResult cut = path("x^2+y^2+z^2=1", {"z>=-0.9"}, {1, 0, 0}, {0, 1, 0});

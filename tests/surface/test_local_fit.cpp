@@ -142,7 +142,9 @@ TEST(LocalFit, BoundsExcludeBoxesBesideTheSurface) {
           {.n = 1, .lower = lower.data(), .upper = upper.data(), .value_lower = &from, .value_upper = &to}));
       const bool meets = std::abs(r - 1) <= h / 2;  // then the box certainly meets the sphere
       const bool away = std::abs(r - 1) > h;        // then it certainly does not, by a margin
-      if (meets) EXPECT_TRUE(from <= 0 && to >= 0) << r;
+      if (meets) {
+        EXPECT_TRUE(from <= 0 && to >= 0) << r;
+      }
       if (away) {
         ++boxes;
         if (from > 0 || to < 0) ++excluded;
