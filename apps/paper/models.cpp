@@ -45,7 +45,7 @@ const Recipe& recipe_of(ModelKind kind) {
        sculpture_formula,
        0.075,
        {0.45, -1, 0.25},
-       {{"feline_genus2.obj", y, {-1, 0.3, 0.4}}}},
+       {{"feline_genus2.obj", -z, {-1, 0.5, -0.3}}}},
       {ModelKind::face,
        "Human face",
        face_formula,
