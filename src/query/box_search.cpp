@@ -89,6 +89,7 @@ PathResult BoxSearch::find(const Vector& p, const Vector& q, Corrector& correcto
   const auto disconnected = [&] {
     result.status = Status::disconnected;
     result.message = kApart;
+    result.proved_apart = true;
     return result;
   };
   for (int level = 0; level < num_levels(); ++level) {

@@ -55,11 +55,6 @@ class BoxSearch {
 
 inline constexpr std::string_view kApart = "the two points lie on different components of the surface";
 
-/// Was it proved, in the box, that there is no path.
-[[nodiscard]] inline bool proved_apart(const PathResult& result) {
-  return result.status == Status::disconnected && result.message == kApart;
-}
-
 /// The time spent on `earlier` counts for `later`.
 inline void add_seconds(const PathResult& earlier, PathResult& later) {
   later.seconds.cells += earlier.seconds.cells;

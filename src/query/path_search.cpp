@@ -56,7 +56,7 @@ PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& correct
   Box seen = levels().box();
   for (int doublings = 0; levels().endless();) {
     const bool way = found.status == Status::ok;
-    if (way ? have_room(found, doublings) : !proved_apart(found)) break;
+    if (way ? have_room(found, doublings) : !found.proved_apart) break;
     const int before = doublings++;
     while (way && doublings < kMostDoublings && !have_room(found, doublings)) ++doublings;
     if (doublings <= kMostDoublings && is_affordable(found, doublings - before)) {
@@ -64,7 +64,7 @@ PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& correct
         const BoxSearch& farther = through(doublings);
         PathResult again = farther.find(p, q, corrector);
         const bool ahead = way ? again.status == Status::ok && again.length <= (1 + options_.tolerance) * found.length
-                               : again.status == Status::ok || proved_apart(again);
+                               : again.status == Status::ok || again.proved_apart;
         add_seconds(found, again);
         if (ahead) {
           found = std::move(again);

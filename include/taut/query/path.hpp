@@ -127,6 +127,9 @@ struct PathResult : Geodesic {
   /// Were other ways round looked for. If not (more than 6 dimensions and a straight walk arrives, or a march that
   /// tells no ways apart), `unique` says nothing, and the path may not be the shortest; PathOptions::all looks always.
   bool rivals_sought = true;
+  /// With Status::disconnected: bounds of the cells prove it for the box that was looked through (on a fitted surface
+  /// they are a careful estimate).
+  bool proved_apart = false;
   /// In order from start to end, on a surface that is not smooth, or where the path meets its border; else empty.
   std::vector<PathPiece> pieces;
   PathSeconds seconds;
