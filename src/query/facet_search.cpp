@@ -14,6 +14,8 @@
 #include "query/candidates.hpp"
 #include "query/shorter_paths.hpp"
 #include "query/stopwatch.hpp"
+#include "strata/shorten_chain.hpp"
+#include "strata/way_chain.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 

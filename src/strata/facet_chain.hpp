@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "strata/facet_graph.hpp"
 #include "strata/faceted_surface.hpp"
 #include "taut/curve/geodesic.hpp"
 
@@ -61,14 +61,10 @@ struct FacetChain {
   std::string why;  ///< why it is not solved
 
   [[nodiscard]] Points points() const;
+  /// Arc i becomes `parts`, with the stops `between` them: one fewer.
+  void replace_arc(std::size_t i, std::vector<ChainStop> between, std::vector<ChainArc> parts);
+  /// Arcs i - 1 and i become one on this face, from the points they have; stop i goes.
+  void join_arcs(std::size_t i, int face);
 };
-
-/// The arcs and stops along a way over the graph.
-[[nodiscard]] FacetChain chain_of(FacetedSurface& surface, const FacetWay& way);
-
-/// Shortens a chain to a broken geodesic: its stops slide along their edges by Newton's method, where every arc is the
-/// geodesic of its face between its stops; what a converged chain breaks (an arc that leaves its face, a stop at the
-/// end of its edge, a corner with room to go round) changes the row of arcs. The result's conditions are checked.
-void shorten_chain(FacetedSurface& surface, FacetChain& chain, const Context& context);
 
 }  // namespace taut::detail

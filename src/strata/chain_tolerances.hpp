@@ -1,0 +1,14 @@
+#pragma once
+
+namespace taut::detail {
+
+/// What counts as equal along a broken geodesic. Lengths are relative to the model (`FacetedSurface::scale`).
+struct ChainTolerances {
+  static constexpr double together = 1e-9;  ///< stops closer than this are one
+  static constexpr double on_edge = 1e-9;   ///< conditions hold within it
+  static constexpr double off_face = 1e-8;  ///< an arc leaves its face where it is farther outside
+  /// A corner's angles may be short of pi by this, radians; tangents agree within it.
+  static constexpr double angle = 1e-7;
+};
+
+}  // namespace taut::detail
