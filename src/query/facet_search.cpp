@@ -14,6 +14,7 @@
 #include "query/candidates.hpp"
 #include "query/shorter_paths.hpp"
 #include "query/stopwatch.hpp"
+#include "strata/facet_ways.hpp"
 #include "strata/shorten_chain.hpp"
 #include "strata/way_chain.hpp"
 #include "taut/cells/subdivide.hpp"
@@ -60,7 +61,7 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
                           std::vector<Found>& found, double& shortest_way) {
   Stopwatch watch;
   const double slack = options_.all ? kAllSlack : 1 + kWaySlack;
-  const std::vector<FacetWay> ways = graph.ways(p, q, slack);
+  const std::vector<FacetWay> ways = ways_between(*surface_, graph, p, q, slack);
   result.seconds.march += watch.restart();
   found.clear();
   shortest_way = ways.empty() ? 0 : ways.front().length;

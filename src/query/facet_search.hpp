@@ -6,6 +6,7 @@
 
 #include "strata/facet_chain.hpp"
 #include "strata/facet_graph.hpp"
+#include "strata/facet_ways.hpp"
 #include "strata/faceted_surface.hpp"
 #include "taut/cells/find_box.hpp"
 #include "taut/core/context.hpp"

@@ -7,7 +7,15 @@
 #include <utility>
 #include <vector>
 
+#include "curve/polyline.hpp"
+
 namespace taut::detail {
+namespace {
+
+/// Parts of an arc whose ends are brought to the edge.
+constexpr Index kMarks = 24;
+
+}  // namespace
 
 double pressed(FacetedSurface& surface, int e, const Point3& x) {
   const SharpEdge edge = surface.edge(e);
@@ -34,8 +42,9 @@ bool follow_edges(FacetedSurface& surface, FacetChain& chain) {
       continue;
     const SharpEdge edge = surface.edge(a.edge);
     std::vector<Point3> marks;
-    for (Index j = 0; j < arc.points.cols(); ++j) {
-      Point3 x = arc.points.col(j);
+    const Points line = at_equal_parts(arc.points, kMarks);
+    for (Index j = 0; j < line.cols(); ++j) {
+      Point3 x = line.col(j);
       if (surface.project(edge.a, {edge.condition}, x)) marks.push_back(x);
     }
     if (marks.size() < 2 || pressed(surface, a.edge, marks[marks.size() / 2]) > 1e-9 / surface.scale) continue;

@@ -18,6 +18,15 @@ constexpr Index kMostStart = 24;
 /// The fields' steps: their ends to 1e-6 or so are all that Newton's method for the stops wants.
 constexpr int kSteps = 24;
 
+void set_straight(const Point3& a, const Point3& b, ChainArc& arc) {
+  arc.length = (b - a).norm();
+  arc.first = arc.last = arc.length > 0 ? Point3((b - a) / arc.length) : Point3::Zero();
+  arc.points = chord(a, b);
+  arc.m12 = std::max(arc.length, 1e-300);
+  arc.m = arc.slope = 1;
+  arc.shortest = true;
+}
+
 void set_fields(SmoothFace& face, const SpectralCurve& curve, ChainArc& arc) {
   // By Runge and Kutta.
   Vector t = Vector::LinSpaced(2 * kSteps + 1, 0, curve.period());
@@ -69,14 +78,13 @@ void set_fields(SmoothFace& face, const SpectralCurve& curve, ChainArc& arc) {
 
 bool trace_face_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, const Point3& b, const Context& context) {
   SmoothFace& face = surface.face(arc.face);
+  if (face.flat) {
+    set_straight(a, b, arc);
+    return true;
+  }
   if (!face.solver) face.solver.emplace(face.surface, NewtonOptions{.tolerance = 1e-13, .leave_saddles = false});
   if ((b - a).norm() <= ChainTolerances::together * surface.scale) {
-    arc.length = (b - a).norm();
-    arc.first = arc.last = arc.length > 0 ? Point3((b - a).normalized()) : Point3::Zero();
-    arc.points = chord(a, b);
-    arc.m12 = std::max(arc.length, 1e-300);
-    arc.m = arc.slope = 1;
-    arc.shortest = true;
+    set_straight(a, b, arc);
     return true;
   }
   // The curve it had, its ends moved.

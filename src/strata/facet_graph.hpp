@@ -1,9 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <limits>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "strata/faceted_surface.hpp"
@@ -12,71 +13,75 @@
 
 namespace taut::detail {
 
-/// A corner that reaches into faces, where they have more than 180 degrees, next to a way.
-struct ReflexCorner {
+/// A point of a face, an edge or a corner.
+struct FacetNode {
   Point3 x;
-  std::vector<int> faces;
-  std::size_t step = 0;  ///< of the way, nearest to it
+  std::vector<int> faces;  ///< that it lies on
+  int edge = -1;           ///< of which it is an inner point
+  bool corner = false;
+  std::vector<int> reflex = {};  ///< faces that a corner reaches into: they have more than 180 degrees there
 };
 
-/// One way between two points over a graph: what a path is corrected from.
-struct FacetWay {
-  double length = 0;
-  std::vector<Point3> points;  ///< from p to q
-  /// One a step between points: faces that both points lie on.
-  std::vector<std::vector<int>> faces;
-  std::vector<bool> corner;  ///< one a point
-  std::vector<int> edge;     ///< one a point: the edge it lies on, or -1
-  std::vector<ReflexCorner> reflex;
+/// A step from a node to another one over faces that both lie on.
+struct FacetLink {
+  std::uint32_t to = 0;
+  float length = std::numeric_limits<float>::infinity();
+  std::uint32_t faces = 0;  ///< bit i: over the i-th face of the node that it leaves
 };
 
 /// Points of every face, edge and corner in the cells of a box, joined to their neighbours on the same face. Shortest
-/// ways over it are some per cent too long, and tell which faces a shortest path may cross.
+/// ways over it are some per cent too long, and tell which faces a shortest path may cross. Immutable.
 class FacetGraph {
  public:
+  /// Nodes so many cells apart are joined.
+  static constexpr double kReach = 2.3;
+  /// A step may be longer than its chord by this: a quarter circle is by 1.11.
+  static constexpr double kLongStep = 1.3;
+
   /// Cells of at most `size` (model units) of `box`. Throws EmptySurface, OutOfMemory, Cancelled.
   FacetGraph(FacetedSurface& surface, const Box& box, double size, const Context& context);
 
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double size() const { return size_; }
-  [[nodiscard]] std::size_t num_nodes() const { return nodes_.size(); }
   [[nodiscard]] Index num_cells() const { return num_cells_; }
+  [[nodiscard]] const std::vector<FacetNode>& nodes() const { return nodes_; }
+  [[nodiscard]] std::span<const FacetLink> links(std::uint32_t node) const {
+    return {links_.data() + first_[node], links_.data() + first_[node + 1]};
+  }
+  /// Corners that reach into a face.
+  [[nodiscard]] const std::vector<std::uint32_t>& reflex_corners() const { return reflex_; }
 
-  /// Ways from p to q (on the surface) no longer than `slack` times the shortest: one for each way round, and one for
-  /// each row of faces. Shortest first; empty where there is none.
-  [[nodiscard]] std::vector<FacetWay> ways(const Point3& p, const Point3& q, double slack) const;
+  /// The steps from a point that is no node, to nodes within `reach`.
+  [[nodiscard]] std::vector<FacetLink> links_of(FacetedSurface& surface, const FacetNode& point, double reach) const;
 
  private:
-  struct Node {
-    Point3 x;
-    std::vector<int> faces;
-    int edge = -1;
-    bool corner = false;
-    std::vector<int> reflex = {};  // faces that a corner reaches into
+  /// Nodes by cubes of side kReach cells.
+  struct Bins {
+    std::unordered_map<std::uint64_t, std::uint32_t> index;
+    std::vector<std::uint64_t> keys;
+    std::vector<std::vector<std::uint32_t>> nodes;
+    [[nodiscard]] const std::vector<std::uint32_t>* at(std::uint64_t key) const;
   };
-  struct Link {
-    std::uint32_t to;
-    float length;
-  };
-  void add(Node node);
+  [[nodiscard]] std::uint64_t bin_of(const Point3& x) const;
+  void add(double scale, FacetNode node);
   /// A point of the face with these conditions zero near the cell's centre that `is_right` accepts.
   template <class IsRight>
-  [[nodiscard]] bool find_point(const Box& cell, int face, const std::vector<int>& conditions, bool try_corners,
-                                const IsRight& is_right, Point3& x);
-  void fill_cell(const Box& cell, const std::vector<int>& kinks);
-  void link();
-  [[nodiscard]] double step(int face, const Point3& a, const Point3& b, bool along_edge) const;
-  [[nodiscard]] std::vector<Link> links_of(const Node& node, double reach) const;
-  [[nodiscard]] double joined(const Node& a, const Node& b) const;
+  [[nodiscard]] bool find_point(FacetedSurface& surface, const Box& cell, int face, const std::vector<int>& conditions,
+                                bool try_corners, const IsRight& is_right, Point3& x) const;
+  void fill_cell(FacetedSurface& surface, const Box& cell, const std::vector<int>& kinks);
+  void link(FacetedSurface& surface);
 
-  FacetedSurface& surface_;
   Box box_;
   double size_;
   Index num_cells_ = 0;
-  std::vector<Node> nodes_;
-  std::vector<std::uint32_t> reflex_;  // corners that reach into a face
-  std::vector<std::vector<Link>> links_;
-  std::map<std::array<int, 3>, std::vector<std::uint32_t>> bins_;
+  std::vector<FacetNode> nodes_;
+  std::vector<std::uint32_t> reflex_;
+  std::vector<std::size_t> first_;  // of a node's links; one more than nodes
+  std::vector<FacetLink> links_;
+  Bins bins_;
 };
+
+/// The step from a to b, infinite where there is none.
+[[nodiscard]] FacetLink step_between(FacetedSurface& surface, const FacetNode& a, const FacetNode& b);
 
 }  // namespace taut::detail

@@ -12,6 +12,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+
+#include "surface/formula/affine.hpp"
 
 namespace taut::detail {
 namespace {
@@ -31,6 +34,23 @@ constexpr double kTangential = 1e-7;
 double in_turn(double angle) {
   angle = std::fmod(angle, kTwoPi);
   return angle < 0 ? angle + kTwoPi : angle;
+}
+
+/// Component i of a function with `count` of them, as what it is where it is affine.
+AffineForm affine_form(Evaluator& evaluator, int count, int i) {
+  const Point3 origin = Point3::Zero();
+  Eigen::VectorXd value(count);
+  Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(3, count);
+  evaluator.evaluate({.n = 1, .x = origin.data(), .value = value.data(), .jacobian = gradient.data()});
+  return {gradient.col(i), value(i)};
+}
+
+/// Second derivative of component i along t.
+double second_derivative(Evaluator& evaluator, int count, int i, const Point3& x, const Point3& t) {
+  Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+  const Eigen::VectorXd weight = Eigen::VectorXd::Unit(count, i);
+  evaluator.evaluate({.n = 1, .x = x.data(), .weight = weight.data(), .hessian = hessian.data()});
+  return t.dot(hessian * t);
 }
 
 }  // namespace
@@ -103,7 +123,9 @@ int FacetedSurface::face_of(const FormulaKinks::Sides& sides) {
       function = std::shared_ptr<const ImplicitFunction>(std::make_shared<Surface>(surface_), &surface_.function());
     }
     faces_.push_back(std::make_unique<SmoothFace>(Surface(std::move(function))));
-    if (kinks_) faces_.back()->text = kinks_->text(roots.front());
+    SmoothFace& made = *faces_.back();
+    if (kinks_) made.text = kinks_->text(roots.front());
+    if (affine_components(made.surface.function()).front()) made.flat = affine_form(*made.evaluator, 1, 0);
     found = face_of_roots_.emplace(roots, static_cast<int>(faces_.size()) - 1).first;
   }
   face_of_sides_.emplace(sides, found->second);
@@ -189,7 +211,11 @@ int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides
     const auto [at, added] = smooth_of_.try_emplace({1, static_cast<NodeId>(index - num_kinks_)}, 0);
     if (added) {
       at->second = static_cast<int>(smooth_.size());
-      smooth_.push_back({surface_.domain()->make_evaluator(), index - num_kinks_, num_domain_});
+      Condition made{surface_.domain()->make_evaluator(), index - num_kinks_, num_domain_};
+      if (affine_components(*surface_.domain())[static_cast<std::size_t>(made.component)]) {
+        made.flat = affine_form(*made.evaluator, made.count, made.component);
+      }
+      smooth_.push_back(std::move(made));
     }
     return at->second;
   }
@@ -199,20 +225,32 @@ int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides
   const auto [at, added] = smooth_of_.try_emplace({0, node}, 0);
   if (added) {
     at->second = static_cast<int>(smooth_.size());
-    smooth_.push_back({kinks_->function({node})->make_evaluator(), 0, 1});
+    const std::shared_ptr<const ImplicitFunction> function = kinks_->function({node});
+    Condition made{function->make_evaluator(), 0, 1};
+    if (affine_components(*function).front()) made.flat = affine_form(*made.evaluator, 1, 0);
+    smooth_.push_back(std::move(made));
   }
   known->second = at->second;
   return at->second;
 }
 
 double FacetedSurface::function(int face, const Point3& x, Point3& gradient) {
+  const SmoothFace& of = this->face(face);
+  if (of.flat) {
+    gradient = of.flat->gradient;
+    return gradient.dot(x) + of.flat->offset;
+  }
   double value = 0;
-  this->face(face).evaluator->evaluate({.n = 1, .x = x.data(), .value = &value, .jacobian = gradient.data()});
+  of.evaluator->evaluate({.n = 1, .x = x.data(), .value = &value, .jacobian = gradient.data()});
   return value;
 }
 
 double FacetedSurface::condition(int condition, const Point3& x, Point3& gradient) {
-  Condition& c = smooth_[static_cast<std::size_t>(condition)];
+  const Condition& c = smooth_[static_cast<std::size_t>(condition)];
+  if (c.flat) {
+    gradient = c.flat->gradient;
+    return gradient.dot(x) + c.flat->offset;
+  }
   if (c.count == 1) {
     double value = 0;
     c.evaluator->evaluate({.n = 1, .x = x.data(), .value = &value, .jacobian = gradient.data()});
@@ -304,12 +342,23 @@ bool FacetedSurface::move(int e, double step, Point3& x) {
   return true;
 }
 
+/// F_a and c vanish along the edge to second order: grad . kappa = -t . H t for both, and kappa is across t.
 Point3 FacetedSurface::curvature(int e, const Point3& x) {
-  const double step = 1e-5 * scale;
-  Point3 ahead = x;
-  Point3 behind = x;
-  if (!move(e, step, ahead) || !move(e, -step, behind)) return Point3::Zero();
-  return (tangent(e, ahead) - tangent(e, behind)) / (2 * step);
+  const SharpEdge& edge = this->edge(e);
+  const SmoothFace& face = this->face(edge.a);
+  const Condition& second = smooth_[static_cast<std::size_t>(edge.condition)];
+  if (face.flat && second.flat) return Point3::Zero();
+  Point3 f;
+  Point3 c;
+  (void)function(edge.a, x, f);
+  (void)condition(edge.condition, x, c);
+  const Point3 cross = f.cross(c);
+  const double size = cross.squaredNorm();
+  if (!(size > kParallel * f.squaredNorm() * c.squaredNorm())) return Point3::Zero();
+  const Point3 t = cross / std::sqrt(size);
+  const double bend_f = face.flat ? 0 : second_derivative(*face.evaluator, 1, 0, x, t);
+  const double bend_c = second.flat ? 0 : second_derivative(*second.evaluator, second.count, second.component, x, t);
+  return -(bend_f * c.cross(cross) + bend_c * cross.cross(f)) / size;
 }
 
 int FacetedSurface::edge_of(int a, int b, int condition) {

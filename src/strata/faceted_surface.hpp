@@ -17,6 +17,12 @@ namespace taut::detail {
 
 using Point3 = Eigen::Vector3d;
 
+/// gradient . x + offset.
+struct AffineForm {
+  Point3 gradient;
+  double offset = 0;
+};
+
 /// A smooth piece of a faceted surface: the zero set of the formula with one choice of sides. It goes on beyond the
 /// piece, where it is no part of the surface.
 struct SmoothFace {
@@ -24,7 +30,8 @@ struct SmoothFace {
   Surface surface;
   std::unique_ptr<Evaluator> evaluator;
   std::optional<NewtonSolver> solver;
-  std::string text;  // its formula
+  std::string text;                // its formula
+  std::optional<AffineForm> flat;  // of a plane
 };
 
 /// Where two faces meet, or a face ends: F_a = 0 and c = 0.
@@ -88,7 +95,7 @@ class FacetedSurface {
   [[nodiscard]] Point3 tangent(int edge, const Point3& x);
   /// x moved along the edge by about `step`; false where that fails.
   [[nodiscard]] bool move(int edge, double step, Point3& x);
-  /// d tangent / d s.
+  /// d tangent / d s; zero where the edge is not determined to second order.
   [[nodiscard]] Point3 curvature(int edge, const Point3& x);
 
   /// The faces around a surface point; conditions that vanish within `tolerance` (model units) count as zero. Empty
@@ -102,6 +109,7 @@ class FacetedSurface {
     std::unique_ptr<Evaluator> evaluator;
     int component = 0;
     int count = 1;
+    std::optional<AffineForm> flat = {};
   };
   explicit FacetedSurface(const Surface& surface) : surface_(surface) {}
   [[nodiscard]] int face_of(const FormulaKinks::Sides& sides);

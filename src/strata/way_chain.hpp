@@ -1,7 +1,7 @@
 #pragma once
 
 #include "strata/facet_chain.hpp"
-#include "strata/facet_graph.hpp"
+#include "strata/facet_ways.hpp"
 #include "strata/faceted_surface.hpp"
 
 namespace taut::detail {

@@ -1,0 +1,365 @@
+// Ways over a graph from p to q. Dijkstra's algorithm runs from both ends, no farther than half of the longest way that
+// is wanted; then a(i) + b(i) is the length of the shortest way through node i for all nodes i half-way. Every hollow
+// of it there is a way round; so is every other row of faces.
+#include "strata/facet_ways.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <optional>
+#include <set>
+#include <utility>
+
+namespace taut::detail {
+namespace {
+
+/// Hollows of the way's length half-way are told apart when the ridge between them is higher by this.
+constexpr double kRidge = 0.003;
+constexpr std::size_t kMostWays = 48;
+/// Corners that reach into a face are told of within so many cells of a way.
+constexpr double kBesideWay = 1.5;
+/// Nodes around an end are looked for in wider and wider balls, up to so many times the usual reach.
+constexpr double kWidestEnd = 4;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+constexpr std::uint32_t kNoNodeBefore = ~std::uint32_t{0};
+
+/// Lengths from one end, in the order of their size up to the width of a bucket: a node whose length falls later is
+/// looked at again.
+class Tree {
+ public:
+  Tree(const FacetGraph& graph, const std::vector<FacetLink>& from)
+      : graph_(graph),
+        per_width_(1 / (kWidth * graph.size())),
+        length_(graph.nodes().size(), kFar),
+        before_(graph.nodes().size(), kNoNodeBefore) {
+    for (const FacetLink& link : from) reach(link.to, static_cast<double>(link.length), kNoNodeBefore);
+  }
+
+  /// All lengths up to this are known.
+  [[nodiscard]] double radius() const { return static_cast<double>(current_) / per_width_; }
+  [[nodiscard]] bool ended() const { return open_ == 0; }
+  [[nodiscard]] double length(std::uint32_t node) const { return length_[node]; }
+  /// The node before, or kNoNodeBefore after the end itself.
+  [[nodiscard]] std::uint32_t before(std::uint32_t node) const { return before_[node]; }
+
+  /// Takes out one bucket; `met` is called with every node in it.
+  template <class Met>
+  void advance(const Met& met) {
+    std::vector<Entry>& bucket = buckets_[current_ % kBuckets];
+    // It grows while it is worked off.
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      const Entry entry = bucket[i];
+      if (entry.length > length_[entry.node]) continue;
+      met(entry.node);
+      for (const FacetLink& link : graph_.links(entry.node)) {
+        reach(link.to, entry.length + static_cast<double>(link.length), entry.node);
+      }
+    }
+    open_ -= bucket.size();
+    bucket.clear();
+    ++current_;
+  }
+
+ private:
+  static constexpr double kWidth = 0.25;  // cells
+  // More than the longest step (an end's) is wide.
+  static constexpr std::uint64_t kBuckets = 64;
+  static_assert(kWidth * kBuckets > FacetGraph::kReach * FacetGraph::kLongStep * kWidestEnd + 2 * kWidth);
+  struct Entry {
+    double length;
+    std::uint32_t node;
+  };
+  void reach(std::uint32_t node, double length, std::uint32_t before) {
+    if (!(length < length_[node])) return;
+    length_[node] = length;
+    before_[node] = before;
+    const auto bucket = std::max(current_, static_cast<std::uint64_t>(length * per_width_));
+    buckets_[bucket % kBuckets].push_back({length, node});
+    ++open_;
+  }
+
+  const FacetGraph& graph_;
+  double per_width_;
+  std::vector<double> length_;
+  std::vector<std::uint32_t> before_;
+  std::array<std::vector<Entry>, kBuckets> buckets_;
+  std::uint64_t current_ = 0;
+  std::size_t open_ = 0;
+};
+
+std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
+  std::vector<int> both;
+  for (const int face : a) {
+    if (std::find(b.begin(), b.end(), face) != b.end()) both.push_back(face);
+  }
+  return both;
+}
+
+FacetNode end_node(FacetedSurface& surface, const Point3& x) {
+  FacetNode node{x, {}};
+  constexpr double kAround = 1e-8;
+  const std::optional<Star> star = surface.star(x, kAround * surface.scale);
+  if (!star) return node;
+  for (const Wedge& wedge : star->wedges) {
+    if (std::find(node.faces.begin(), node.faces.end(), wedge.face) == node.faces.end()) {
+      node.faces.push_back(wedge.face);
+    }
+  }
+  if (star->wedges.size() > 1 || !star->closed) node.edge = star->wedges.front().second_edge;
+  return node;
+}
+
+/// Faces of a step, as bits of the faces of the node it leaves.
+std::vector<int> faces_of(const FacetNode& from, std::uint32_t bits) {
+  std::vector<int> faces;
+  for (std::size_t i = 0; bits != 0; ++i, bits >>= 1) {
+    if ((bits & 1) != 0) faces.push_back(from.faces[i]);
+  }
+  return faces;
+}
+
+/// Both trees, and what is asked of them.
+class WaySearch {
+ public:
+  WaySearch(FacetedSurface& surface, const FacetGraph& graph, const Point3& p, const Point3& q)
+      : surface_(surface), graph_(graph), ends_{end_node(surface, p), end_node(surface, q)} {
+    for (const std::size_t end : {0U, 1U}) {
+      for (double reach = FacetGraph::kReach; reach <= kWidestEnd * FacetGraph::kReach && links_[end].empty();
+           reach *= 2) {
+        links_[end] = graph.links_of(surface, ends_[end], reach * graph.size());
+        reach_ = std::max(reach_, reach * graph.size());
+      }
+    }
+    direct_ = step_between(surface, ends_[0], ends_[1]);
+  }
+
+  [[nodiscard]] std::vector<FacetWay> find(double slack);
+
+ private:
+  using Row = std::vector<int>;
+  [[nodiscard]] double total(std::uint32_t node) const { return tree(0).length(node) + tree(1).length(node); }
+  [[nodiscard]] const Tree& tree(std::size_t end) const { return *trees_[end]; }
+  void grow(double slack);
+  [[nodiscard]] FacetWay way_through(std::uint32_t node) const;
+  [[nodiscard]] FacetWay direct_way() const;
+  [[nodiscard]] FacetWay way_of(const std::vector<const FacetNode*>& nodes, double length,
+                                std::vector<std::vector<int>> faces) const;
+  [[nodiscard]] std::vector<int> step_faces(std::size_t end, std::uint32_t node) const;
+  [[nodiscard]] std::vector<std::uint32_t> hollows(const std::vector<std::uint32_t>& middle) const;
+  [[nodiscard]] int label(std::size_t end, std::uint32_t node);
+  [[nodiscard]] Row row_through(std::uint32_t node);
+
+  /// The row of faces from an end to a node.
+  struct Label {
+    int before;  // -1: none
+    Row faces;   // all steps since then lie on these
+  };
+
+  FacetedSurface& surface_;
+  const FacetGraph& graph_;
+  std::array<FacetNode, 2> ends_;
+  std::array<std::vector<FacetLink>, 2> links_;
+  double reach_ = 0;  // of the ends
+  FacetLink direct_;
+  std::array<std::optional<Tree>, 2> trees_;
+  double best_ = kFar;
+  std::array<std::vector<Label>, 2> labels_;
+  std::array<std::map<std::pair<int, Row>, int>, 2> label_of_row_;
+  std::array<std::vector<int>, 2> label_of_node_;
+};
+
+/// Half-way, a way's lengths to its ends differ by no more than a step.
+void WaySearch::grow(double slack) {
+  best_ = static_cast<double>(direct_.length);
+  for (const std::size_t end : {0U, 1U}) trees_[end].emplace(graph_, links_[end]);
+  const double step = FacetGraph::kLongStep * reach_;
+  while (true) {
+    const double radius = std::min(trees_[0]->radius(), trees_[1]->radius());
+    if (radius > (slack * best_ + step) / 2) return;
+    if (trees_[0]->ended() && trees_[1]->ended()) return;
+    const std::size_t end = trees_[0]->radius() <= trees_[1]->radius() ? 0 : 1;
+    trees_[end]->advance([&](std::uint32_t node) { best_ = std::min(best_, total(node)); });
+  }
+}
+
+/// Faces of the step by which the tree of an end comes to a node.
+std::vector<int> WaySearch::step_faces(std::size_t end, std::uint32_t node) const {
+  const std::uint32_t before = tree(end).before(node);
+  if (before == kNoNodeBefore) {
+    const auto link =
+        std::find_if(links_[end].begin(), links_[end].end(), [&](const FacetLink& l) { return l.to == node; });
+    return faces_of(ends_[end], link->faces);
+  }
+  const auto links = graph_.links(before);
+  const auto link = std::find_if(links.begin(), links.end(), [&](const FacetLink& l) { return l.to == node; });
+  return faces_of(graph_.nodes()[before], link->faces);
+}
+
+FacetWay WaySearch::way_of(const std::vector<const FacetNode*>& nodes, double length,
+                           std::vector<std::vector<int>> faces) const {
+  FacetWay way;
+  way.length = length;
+  way.faces = std::move(faces);
+  for (const FacetNode* node : nodes) {
+    way.points.push_back(node->x);
+    way.corner.push_back(node->corner);
+    way.edge.push_back(node->edge);
+  }
+  for (const std::uint32_t corner : graph_.reflex_corners()) {
+    const Point3& x = graph_.nodes()[corner].x;
+    double least = kBesideWay * graph_.size();
+    std::size_t nearest = way.faces.size();
+    for (std::size_t i = 0; i + 1 < way.points.size(); ++i) {
+      const Point3 along = way.points[i + 1] - way.points[i];
+      const double u = std::clamp(along.dot(x - way.points[i]) / along.squaredNorm(), 0.0, 1.0);
+      const double away = (way.points[i] + u * along - x).norm();
+      if (away >= least) continue;
+      least = away;
+      nearest = i;
+    }
+    constexpr double kOnWay = 1e-9;
+    const bool on_way = least <= kOnWay * surface_.scale;
+    if (nearest < way.faces.size() && !on_way) way.reflex.push_back({x, graph_.nodes()[corner].reflex, nearest});
+  }
+  return way;
+}
+
+FacetWay WaySearch::way_through(std::uint32_t node) const {
+  std::vector<const FacetNode*> nodes;
+  std::vector<std::vector<int>> faces;
+  for (std::uint32_t at = node; at != kNoNodeBefore; at = tree(0).before(at)) {
+    nodes.push_back(&graph_.nodes()[at]);
+    faces.push_back(step_faces(0, at));
+  }
+  nodes.push_back(ends_.data());
+  std::reverse(nodes.begin(), nodes.end());
+  std::reverse(faces.begin(), faces.end());
+  for (std::uint32_t at = node; at != kNoNodeBefore; at = tree(1).before(at)) {
+    if (at != node) nodes.push_back(&graph_.nodes()[at]);
+    faces.push_back(step_faces(1, at));
+  }
+  nodes.push_back(&ends_[1]);
+  return way_of(nodes, total(node), std::move(faces));
+}
+
+FacetWay WaySearch::direct_way() const {
+  return way_of({ends_.data(), &ends_[1]}, static_cast<double>(direct_.length), {faces_of(ends_[0], direct_.faces)});
+}
+
+/// Of nodes in the order of the ways through them: the lowest of each hollow.
+std::vector<std::uint32_t> WaySearch::hollows(const std::vector<std::uint32_t>& middle) const {
+  std::vector<std::uint32_t> found;
+  std::vector<int> rank(graph_.nodes().size(), -1);
+  std::vector<std::size_t> root(middle.size());
+  std::iota(root.begin(), root.end(), std::size_t{0});
+  const auto root_of = [&](std::size_t i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::vector<bool> kept(middle.size(), false);
+  for (std::size_t i = 0; i < middle.size(); ++i) {
+    rank[middle[i]] = static_cast<int>(i);
+    for (const FacetLink& link : graph_.links(middle[i])) {
+      if (rank[link.to] < 0) continue;
+      std::size_t one = root_of(i);
+      std::size_t two = root_of(static_cast<std::size_t>(rank[link.to]));
+      if (one == two) continue;
+      if (total(middle[one]) > total(middle[two])) std::swap(one, two);
+      // The higher hollow ends at this ridge.
+      if (total(middle[i]) - total(middle[two]) > kRidge * best_) kept[two] = true;
+      root[two] = one;
+    }
+  }
+  for (std::size_t i = 0; i < middle.size(); ++i) {
+    if (kept[i] || root_of(i) == i) found.push_back(middle[i]);
+  }
+  return found;
+}
+
+/// Steps that share a face are one part of the row.
+int WaySearch::label(std::size_t end, std::uint32_t node) {
+  std::vector<int>& labels = label_of_node_[end];
+  labels.resize(graph_.nodes().size(), -1);
+  std::vector<std::uint32_t> open;
+  for (std::uint32_t at = node; at != kNoNodeBefore && labels[at] < 0; at = tree(end).before(at)) open.push_back(at);
+  while (!open.empty()) {
+    const std::uint32_t at = open.back();
+    open.pop_back();
+    const std::uint32_t before = tree(end).before(at);
+    std::vector<int> faces = step_faces(end, at);
+    int previous = before == kNoNodeBefore ? -1 : labels[before];
+    if (previous >= 0) {
+      const Label& last = labels_[end][static_cast<std::size_t>(previous)];
+      std::vector<int> both = common(last.faces, faces);
+      if (!both.empty()) {
+        faces = std::move(both);
+        previous = last.before;
+      }
+    }
+    const auto [known, added] =
+        label_of_row_[end].try_emplace({previous, faces}, static_cast<int>(labels_[end].size()));
+    if (added) labels_[end].push_back({previous, std::move(faces)});
+    labels[at] = known->second;
+  }
+  return labels[node];
+}
+
+WaySearch::Row WaySearch::row_through(std::uint32_t node) {
+  const auto half = [&](std::size_t end) {
+    std::vector<const Row*> parts;
+    for (int at = label(end, node); at >= 0; at = labels_[end][static_cast<std::size_t>(at)].before) {
+      parts.push_back(&labels_[end][static_cast<std::size_t>(at)].faces);
+    }
+    return parts;
+  };
+  std::vector<const Row*> first = half(0);
+  const std::vector<const Row*> second = half(1);
+  Row row;
+  for (std::size_t i = first.size(); i-- > 1;) row.push_back(first[i]->front());
+  const Row both = common(*first.front(), *second.front());
+  row.push_back(both.empty() ? first.front()->front() : both.front());
+  if (both.empty()) row.push_back(second.front()->front());
+  for (std::size_t i = 1; i < second.size(); ++i) row.push_back(second[i]->front());
+  return row;
+}
+
+std::vector<FacetWay> WaySearch::find(double slack) {
+  grow(slack);
+  std::vector<FacetWay> found;
+  if (!(best_ < kFar)) return found;
+  const auto n = static_cast<std::uint32_t>(graph_.nodes().size());
+  const double half = FacetGraph::kLongStep * reach_;
+  std::vector<std::uint32_t> middle;
+  for (std::uint32_t i = 0; i < n; ++i) {
+    if (total(i) <= slack * best_ && std::abs(tree(0).length(i) - tree(1).length(i)) <= half) middle.push_back(i);
+  }
+  std::stable_sort(middle.begin(), middle.end(), [&](auto i, auto j) { return total(i) < total(j); });
+  if (static_cast<double>(direct_.length) <= slack * best_) found.push_back(direct_way());
+  std::set<Row> rows;
+  for (const std::uint32_t hollow : hollows(middle)) {
+    found.push_back(way_through(hollow));
+    rows.insert(row_through(hollow));
+  }
+  for (const std::uint32_t node : middle) {
+    if (found.size() >= kMostWays) break;
+    if (total(node) > (1 + (slack - 1) / 2) * best_) break;
+    if (rows.insert(row_through(node)).second) found.push_back(way_through(node));
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const FacetWay& x, const FacetWay& y) { return x.length < y.length; });
+  if (found.size() > kMostWays) found.resize(kMostWays);
+  return found;
+}
+
+}  // namespace
+
+std::vector<FacetWay> ways_between(FacetedSurface& surface, const FacetGraph& graph, const Point3& p, const Point3& q,
+                                   double slack) {
+  return WaySearch(surface, graph, p, q).find(slack);
+}
+
+}  // namespace taut::detail
