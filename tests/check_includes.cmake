@@ -1,7 +1,8 @@
 cmake_minimum_required(VERSION 3.25)
-# Fails when a room includes what stands above it: core < surface < cells < march < curve < fan < strata < query; io and view stand
-# beside, on core, surface and cells, and view on io.
-set(rooms core surface cells march curve fan strata query io view)
+# Fails when a room includes what stands above it: core < surface < cells < march < curve < fan < strata < walk < homotopy < search <
+# query; fan, strata, walk and homotopy do not know each other; io and view stand beside, on core, surface and cells, and
+# view on io.
+set(rooms core surface cells march curve fan strata walk homotopy search query io view)
 set(below_core core)
 set(below_surface core surface)
 set(below_cells core surface cells)
@@ -9,7 +10,10 @@ set(below_march core surface cells march)
 set(below_curve core surface cells march curve)
 set(below_fan core surface cells march curve fan)
 set(below_strata core surface cells march curve strata)
-set(below_query core surface cells march curve fan strata query)
+set(below_walk core surface cells march curve walk)
+set(below_homotopy core surface cells march curve homotopy)
+set(below_search core surface cells march curve fan strata walk homotopy search)
+set(below_query core surface cells march curve fan strata walk homotopy search query)
 set(below_io core surface io)
 set(below_view core surface cells io view)
 

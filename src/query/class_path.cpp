@@ -6,11 +6,13 @@
 #include <optional>
 #include <utility>
 
-#include "query/check_options.hpp"
-#include "query/class_setting.hpp"
-#include "query/flow_options.hpp"
-#include "query/geodesic_polygon.hpp"
-#include "query/stopwatch.hpp"
+#include "core/stopwatch.hpp"
+#include "homotopy/class_setting.hpp"
+#include "homotopy/geodesic_polygon.hpp"
+#include "homotopy/shortening.hpp"
+#include "search/cell_levels.hpp"
+#include "search/check_options.hpp"
+#include "search/flow_options.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/curve/newton.hpp"
 
@@ -34,9 +36,14 @@ Geodesic uncorrected(const Shortening& shortening) {
 PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const PathOptions& options,
                          const Context& context) {
   detail::check_options(options);
+  detail::check_polyline(surface, polyline, false);
+  if (options.method == CorrectionMethod::grid) {
+    throw InvalidArgument("method grid: a polyline is shortened by newton or flow");
+  }
   detail::Stopwatch watch;
   const detail::StrandMaker maker(surface);
-  detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, false, options, context);
+  const double cell = detail::first_cell_size(surface, {options.grid, options.cell, {}}, polyline, context);
+  detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, false, cell);
   PathResult result;
   result.from = setting.strand.points.col(0);
   result.to = setting.strand.points.rightCols(1);

@@ -7,10 +7,12 @@
 #include <string>
 #include <utility>
 
-#include "query/check_options.hpp"
-#include "query/class_setting.hpp"
-#include "query/geodesic_polygon.hpp"
-#include "query/stopwatch.hpp"
+#include "core/stopwatch.hpp"
+#include "homotopy/class_setting.hpp"
+#include "homotopy/geodesic_polygon.hpp"
+#include "homotopy/shortening.hpp"
+#include "search/cell_levels.hpp"
+#include "search/check_options.hpp"
 
 namespace taut {
 namespace {
@@ -55,9 +57,11 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   if (options.method != CorrectionMethod::newton) {
     throw InvalidArgument("closed geodesics are found by method newton only");
   }
+  detail::check_polyline(surface, polyline, true);
   detail::Stopwatch watch;
   const detail::StrandMaker maker(surface);
-  detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, true, options, context);
+  const double cell = detail::first_cell_size(surface, {options.grid, options.cell, {}}, polyline, context);
+  detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, true, cell);
   const double cells_seconds = watch.restart();
   Shortening shortening(maker, std::move(setting.strand), setting.gap);
   GeodesicPolygon polygon(surface, maker, options.tolerance, setting.gap);

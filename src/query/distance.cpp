@@ -8,10 +8,11 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "query/cell_levels.hpp"
-#include "query/fan_answers.hpp"
-#include "query/polished.hpp"
+#include "curve/polished.hpp"
+#include "fan/fan_answers.hpp"
+#include "search/cell_levels.hpp"
 #include "surface/describe.hpp"
+#include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/fan/geodesic_fan.hpp"
 #include "taut/surface/projection.hpp"

@@ -14,8 +14,9 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "query/cell_levels.hpp"
-#include "query/fan_answers.hpp"
+#include "fan/fan_answers.hpp"
+#include "search/cell_levels.hpp"
+#include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/fan/geodesic_fan.hpp"
 

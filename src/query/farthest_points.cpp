@@ -7,7 +7,8 @@
 #include <limits>
 #include <memory>
 
-#include "query/cell_levels.hpp"
+#include "search/cell_levels.hpp"
+#include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 

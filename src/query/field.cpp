@@ -4,8 +4,9 @@
 #include <limits>
 #include <string>
 
-#include "query/cell_levels.hpp"
-#include "query/check_options.hpp"
+#include "search/cell_levels.hpp"
+#include "search/check_options.hpp"
+#include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/query/surface_mesh.hpp"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "query/polished.hpp"
+#include "curve/polished.hpp"
 
 namespace taut {
 

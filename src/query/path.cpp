@@ -11,13 +11,14 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
 #include "curve/polyline.hpp"
-#include "query/check_options.hpp"
-#include "query/corrector.hpp"
-#include "query/facet_search.hpp"
-#include "query/path_search.hpp"
-#include "query/stopwatch.hpp"
+#include "search/check_options.hpp"
+#include "search/corrector.hpp"
+#include "search/facet_search.hpp"
+#include "search/path_search.hpp"
 #include "surface/formula/formula_function.hpp"
+#include "surface/point_text.hpp"
 
 namespace taut {
 namespace {

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "core/parallel.hpp"
-#include "query/cell_levels.hpp"
+#include "search/cell_levels.hpp"
 #include "surface/normal_space.hpp"
+#include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 

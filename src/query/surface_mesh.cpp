@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "query/cell_levels.hpp"
+#include "search/cell_levels.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"

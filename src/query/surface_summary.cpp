@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "query/cell_levels.hpp"
+#include "search/cell_levels.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/mesh_surface.hpp"

@@ -14,7 +14,7 @@
 #include <memory>
 #include <string>
 
-#include "query/polished.hpp"
+#include "curve/polished.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 

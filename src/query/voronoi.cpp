@@ -15,8 +15,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "query/cell_levels.hpp"
 #include "query/chains.hpp"
+#include "search/cell_levels.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 #include "taut/query/surface_mesh.hpp"

@@ -11,7 +11,7 @@
 #include "taut/surface/rbf.hpp"
 
 // The paper's own way over the roll of its Figure 3, known only by samples: lazy cells, march, descent, curvature flow.
-// tests/query/test_roll.cpp asks the same of the whole.
+// tests/search/test_rolled_sheet.cpp asks the same of the whole.
 
 namespace taut {
 namespace {

@@ -1,0 +1,267 @@
+// Shortest paths over edges and along borders: ways over a graph of all faces, each shortened to a broken geodesic, the
+// shortest of which is the path. The graph's ways are a few per cent too long, so that all within that of the best
+// length found are shortened. The box of the graph must hold all shorter paths, and its cells must be small against the
+// path; else another one is made.
+#include "search/facet_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/stopwatch.hpp"
+#include "search/candidates.hpp"
+#include "search/shorter_paths.hpp"
+#include "strata/facet_ways.hpp"
+#include "strata/shorten_chain.hpp"
+#include "strata/way_chain.hpp"
+#include "taut/cells/subdivide.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// Cells of a graph, about: some 10 to 20 ms.
+constexpr double kCells = 4000;
+/// Cells a side for a first count.
+constexpr double kFirstCells = 12;
+/// A graph's ways are too long by at most this part, and too short by its bends.
+constexpr double kWaySlack = 0.06;
+/// Of all ways, those up to so many times as long.
+constexpr double kAllSlack = 3;
+/// A path is at least so many cells long, or the graph is made again around it.
+constexpr double kCellsAlong = 8;
+constexpr int kMostGraphs = 8;
+/// So many times as many cells where no way settled.
+constexpr double kFiner = 4;
+
+}  // namespace
+
+FacetSearch::FacetSearch(const Surface& surface, const PathOptions& options, const Context& context)
+    : options_(options), context_(context) {
+  if (options.method != CorrectionMethod::newton || options.march != MarchMethod::convergent) {
+    return;
+  }
+  surface_ = FacetedSurface::of(surface);
+}
+
+std::unique_ptr<FacetGraph> FacetSearch::graph(const Box& box, double cells) {
+  surface_->scale = box.diagonal();
+  if (options_.cell > 0) return std::make_unique<FacetGraph>(*surface_, box, options_.cell, context_);
+  const double side = box.extent().maxCoeff();
+  const double first = side / kFirstCells;
+  const Index coarse = subdivide(surface_->surface(), {.size = first, .box = box}, context_).num_cells();
+  const double size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
+  return std::make_unique<FacetGraph>(*surface_, box, size, context_);
+}
+
+bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3& q, PathResult& result,
+                          std::vector<Found>& found, double& shortest_way) {
+  Stopwatch watch;
+  const double slack = options_.all ? kAllSlack : 1 + kWaySlack;
+  const std::vector<FacetWay> ways = ways_between(*surface_, graph, p, q, slack);
+  result.seconds.march += watch.restart();
+  found.clear();
+  shortest_way = ways.empty() ? 0 : ways.front().length;
+  double best = std::numeric_limits<double>::infinity();
+  double unsolved = best;
+  std::string why;
+  for (const FacetWay& way : ways) {
+    if (way.length > slack * best) break;
+    FacetChain chain = chain_of(*surface_, way);
+    shorten_chain(*surface_, chain, context_);
+    if (!chain.solved) {
+      if (way.length < unsolved) {
+        unsolved = way.length;
+        why = chain.why;
+      }
+      continue;
+    }
+    best = std::min(best, chain.length);
+    found.push_back({std::move(chain), way});
+  }
+  result.seconds.correct += watch.restart();
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Found& a, const Found& b) { return a.chain.length < b.chain.length; });
+  result.message.clear();
+  result.marched = shortest_way;
+  if (found.empty()) {
+    if (!ways.empty()) result.message = fmt::format("the path over the edges of this surface was not found: {}", why);
+    return false;
+  }
+  // Of a way that was not settled it is not known whether it is as short.
+  result.rivals_sought = unsolved > (1 + kWaySlack) * best;
+  // A way that promised a shorter path.
+  if (unsolved < best) {
+    result.message =
+        fmt::format("a shorter path may exist: a way of length {:.6g} was not settled ({})", unsolved, why);
+  }
+  return true;
+}
+
+PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExtent& extent) {
+  PathResult result;
+  result.from = p;
+  result.to = q;
+  const bool ends = !extent.endless.any();
+  const double apart = (q - p).norm();
+  if (apart == 0) {
+    result.message = "the two points are the same";
+    return result;
+  }
+  std::unique_ptr<FacetGraph> own;
+  const FacetGraph* current = nullptr;
+  const auto room = [&](double margin) {
+    const Vector reach = Vector::Constant(3, margin);
+    return intersection({p.cwiseMin(q) - reach, p.cwiseMax(q) + reach}, extent.whole);
+  };
+  Box box = ends ? Box{extent.box.lower, extent.box.upper} : room(apart);
+  if (ends) {
+    const Vector margin = Vector::Constant(3, 1e-3 * box.diagonal());
+    box = {box.lower - margin, box.upper + margin};
+  }
+  std::vector<Found> found;
+  bool solved = false;
+  double grown = apart;
+  double cells = kCells;
+  bool first_try = true;  // else: after one that left doubts
+  std::vector<Found> first_try_found;
+  std::string first_try_message;
+  for (int round = 0; round < kMostGraphs; ++round) {
+    const Stopwatch watch;
+    try {
+      if (ends && round == 0) {
+        surface_->scale = box.diagonal();
+        if (!whole_) whole_ = graph(box, cells);
+        current = whole_.get();
+      } else {
+        own = graph(box, cells);
+        current = own.get();
+      }
+    } catch (const EmptySurface&) {
+      current = nullptr;
+    }
+    result.seconds.cells += watch.seconds();
+    double way = 0;
+    solved = current != nullptr && correct(*current, p, q, result, found, way);
+    if (!solved && !first_try) {
+      found = std::move(first_try_found);
+      result.message = first_try_message;
+      solved = true;
+      break;
+    }
+    if (!solved && way > 0) {
+      // There are ways, but none settled: on finer cells, around them.
+      if (cells > kCells) break;
+      cells *= kFiner;
+      box = intersection(box_of_shorter_paths(p, q, (1 + kWaySlack) * way), ends ? box : extent.whole);
+      continue;
+    }
+    if (!solved) {
+      if (ends) break;
+      grown *= 2;
+      box = room(grown);
+      continue;
+    }
+    const double length = found.front().chain.length;
+    Box needed = box_of_shorter_paths(p, q, length);
+    needed = intersection(needed, ends ? box : extent.whole);
+    const bool holds = current->box().contains(needed.lower) && current->box().contains(needed.upper);
+    const bool fine = current->size() <= length / kCellsAlong;
+    if (holds && (fine || options_.cell > 0)) {
+      if (!first_try) {
+        // Twice looked at: the shorter one, and its doubts.
+        if (first_try_found.front().chain.length <= length) {
+          found = std::move(first_try_found);
+          if (first_try_message.empty() || !result.message.empty()) result.message = first_try_message;
+        }
+        break;
+      }
+      if (result.message.empty() || options_.cell > 0) break;
+      first_try = false;
+      first_try_found = found;
+      first_try_message = result.message;
+      cells *= kFiner;
+      box = needed;
+      continue;
+    }
+    if (round + 1 == kMostGraphs) {
+      result.message = "a shorter path may exist: it was not looked for everywhere";
+      break;
+    }
+    if (holds && needed.extent().maxCoeff() > 0.7 * current->box().extent().maxCoeff()) break;
+    box = needed;
+  }
+  if (current != nullptr) {
+    result.cell = current->size();
+    result.num_cells = current->num_cells();
+    result.grid = GridMethod::subdivide;
+  }
+  if (!solved) {
+    if (result.message.empty()) result.message = "the two points are not joined by the faces that were found";
+    return result;
+  }
+  deliver(found, result);
+  return result;
+}
+
+void FacetSearch::deliver(const std::vector<Found>& found, PathResult& result) const {
+  const auto points_of = [&](const FacetChain& chain) {
+    Points points = chain.points();
+    points.col(0) = result.from;
+    points.col(points.cols() - 1) = result.to;
+    return points;
+  };
+  const FacetChain& best = found.front().chain;
+  result.status = Status::ok;
+  result.length = best.length;
+  result.length_error = best.error + 4e-16 * best.length;
+  result.locally_shortest = best.locally_shortest;
+  if (best.locally_shortest) result.index = 0;
+  result.points = points_of(best);
+  result.start_direction = best.arcs.front().first;
+  result.num_iterations = best.rounds;
+  for (const ChainArc& arc : best.arcs) {
+    result.residual.surface = std::max(result.residual.surface, arc.residual.surface);
+    result.residual.geodesic_curvature = std::max(result.residual.geodesic_curvature, arc.residual.geodesic_curvature);
+    result.num_iterations += arc.iterations;
+  }
+  const FacetWay& way = found.front().way;
+  result.marched = way.length;
+  result.grid_path.resize(3, static_cast<Index>(way.points.size()));
+  for (std::size_t i = 0; i < way.points.size(); ++i) result.grid_path.col(static_cast<Index>(i)) = way.points[i];
+  for (const Found& one : found) {
+    add_candidate(result.candidates, {one.chain.length, one.chain.error + 4e-16 * one.chain.length,
+                                      one.chain.locally_shortest, points_of(one.chain)});
+  }
+  result.unique = first_is_unique(result.candidates, options_.tolerance);
+  for (std::size_t i = 0; i < best.arcs.size(); ++i) {
+    const ChainArc& arc = best.arcs[i];
+    PathPiece piece;
+    piece.kind = arc.face >= 0                    ? PathPiece::Kind::face
+                 : surface_->edge(arc.edge).b < 0 ? PathPiece::Kind::border
+                                                  : PathPiece::Kind::edge;
+    if (arc.face >= 0) piece.face = surface_->face(arc.face).text;
+    piece.length = arc.length;
+    piece.point = best.stops[i].x;
+    result.pieces.push_back(piece);
+    if (i + 1 == best.arcs.size()) break;
+    const ChainStop& stop = best.stops[i + 1];
+    if (stop.kind != ChainStop::Kind::crossing && stop.kind != ChainStop::Kind::corner) continue;
+    PathPiece meeting;
+    meeting.point = stop.x;
+    meeting.kind = stop.kind == ChainStop::Kind::corner ? PathPiece::Kind::corner : PathPiece::Kind::crossing;
+    if (stop.kind == ChainStop::Kind::corner) {
+      meeting.left = stop.left;
+      meeting.right = stop.right;
+    } else {
+      const Point3 t = surface_->tangent(stop.edge, stop.x);
+      meeting.left = meeting.right = std::acos(std::clamp(std::abs(arc.last.dot(t)), 0.0, 1.0));
+    }
+    result.pieces.push_back(meeting);
+  }
+}
+
+}  // namespace taut::detail

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "strata/facet_chain.hpp"
+#include "strata/facet_graph.hpp"
+#include "strata/facet_ways.hpp"
+#include "strata/faceted_surface.hpp"
+#include "taut/cells/find_box.hpp"
+#include "taut/core/context.hpp"
+#include "taut/search/path_options.hpp"
+#include "taut/search/path_result.hpp"
+
+namespace taut::detail {
+
+/// Finds shortest paths on a surface made of faces: with edges and corners, or a border. One thread's.
+class FacetSearch {
+ public:
+  /// Keeps the references.
+  FacetSearch(const Surface& surface, const PathOptions& options, const Context& context);
+  /// Is the surface one: else `find` is not to be called.
+  [[nodiscard]] bool is_ready() const { return surface_ != nullptr; }
+  /// Has its formula kinks, so that paths may have to cross edges.
+  [[nodiscard]] bool has_kinks() const { return is_ready() && surface_->num_kinks() > 0; }
+
+  /// The shortest path from p to q, points of the surface, which lies in `extent`. Where it is not found out,
+  /// `status` is not_converged and the message says why.
+  [[nodiscard]] PathResult find(const Vector& p, const Vector& q, const SurfaceExtent& extent);
+
+ private:
+  struct Found {
+    FacetChain chain;
+    FacetWay way;
+  };
+  [[nodiscard]] std::unique_ptr<FacetGraph> graph(const Box& box, double cells);
+  /// Corrects the ways over the graph. True when some are solved.
+  [[nodiscard]] bool correct(const FacetGraph& graph, const Point3& p, const Point3& q, PathResult& result,
+                             std::vector<Found>& found, double& shortest_way);
+  void deliver(const std::vector<Found>& found, PathResult& result) const;
+
+  const PathOptions& options_;
+  const Context& context_;
+  std::unique_ptr<FacetedSurface> surface_;
+  std::unique_ptr<FacetGraph> whole_;  // of a surface that ends: the same for all pairs
+};
+
+}  // namespace taut::detail

@@ -1,0 +1,299 @@
+#include "search/start_finder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "core/parallel.hpp"
+#include "core/stopwatch.hpp"
+#include "curve/polyline.hpp"
+#include "search/fan_out.hpp"
+#include "search/march_check.hpp"
+#include "search/normal_turns.hpp"
+#include "search/side_steps.hpp"
+#include "taut/curve/newton.hpp"
+#include "taut/march/march.hpp"
+#include "walk/find_ways.hpp"
+
+namespace taut::detail {
+namespace {
+
+constexpr Index kMostRivals = 16;
+constexpr Index kMostWaysRound = 64;
+/// Over rims, places close to each other lead to different geodesics: StartPathOptions::spread.
+constexpr double kSpreadOverBends = 0.04;
+
+// The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
+constexpr double kTableTurn = 0.85;  // most that the normal turns from one of its cells to the next, radians
+constexpr double kTurnQuantile = 0.95;
+constexpr double kRefinement = 1.2;  // the next finer size
+constexpr double kFewestCells = 400;
+constexpr double kFewestLandmarks = 320;
+constexpr double kLandmarksPerTurn2 = 0.1;
+// How wrong it is, is measured against finer cells, and on a few ways. Where it is too wrong, finer cells are taken.
+constexpr double kCheckedPart = 0.99;
+constexpr double kMostOff = 0.03;
+constexpr Index kCalibrationWays = 48;
+constexpr double kCalibrationTolerance = 1e-3;
+constexpr double kSafety = 2;
+constexpr double kLeastTableError = 0.03;
+constexpr double kMostWrong = 0.03;
+constexpr double kDoubtSafety = 3;
+constexpr double kLeastTableDoubt = 0.004;
+constexpr double kMostTableDoubt = 0.03;
+/// Where the table bounds the distance, marches keep to the cells that paths no longer than the rivals run through, and
+/// so many more.
+constexpr double kMarginCells = 2;
+/// Where the fields know no way, none longer than so many diagonals of the box is sought.
+constexpr double kMostDiagonals = 2;
+/// A table is made when it costs less than this part of marching from both ends of each pair.
+constexpr double kWorthwhile = 0.2;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Do p and q lie in cells with different labels.
+bool in_two(SurfaceCells& cells, const std::vector<std::int32_t>& label, const Vector& p, const Vector& q) {
+  const Index i = cells.cell_at(p);
+  const Index j = cells.cell_at(q);
+  if (i == CellGrid::kNone || j == CellGrid::kNone) return false;
+  return label[static_cast<std::size_t>(i)] != label[static_cast<std::size_t>(j)];
+}
+
+/// Centres of the cells that one of the fields has come to.
+Points walked_cells(const CellGrid& grid, const DistanceField& from_p, const std::optional<DistanceField>& from_q) {
+  const auto reached = [](const DistanceField& field, Index i) {
+    return i < field.distance.size() && std::isfinite(field.distance(i));
+  };
+  std::vector<Index> walked;
+  for (Index i = 0; i < grid.num_cells(); ++i) {
+    if (reached(from_p, i) || (from_q && reached(*from_q, i))) walked.push_back(i);
+  }
+  Points centres(grid.dim(), static_cast<Index>(walked.size()));
+  for (std::size_t j = 0; j < walked.size(); ++j) centres.col(static_cast<Index>(j)) = grid.centre(walked[j]);
+  return centres;
+}
+
+}  // namespace
+
+StartFinder::StartFinder(const Surface& surface, const PathOptions& options, const Context& context)
+    : surface_(surface),
+      options_(options),
+      context_(context),
+      levels_(surface, {options.grid, options.cell, options.seeds}, context) {}
+
+Ground StartFinder::ground(int level, const PointsIn& seeds) const {
+  if (options_.envelope != 0) return {levels_.envelope(level, options_.envelope), nullptr, nullptr};
+  std::shared_ptr<SurfaceCells> cells = levels_.cells(level, seeds);
+  return {std::move(cells), levels_.map(level), levels_.sharp_bends(level)};
+}
+
+bool StartFinder::bends_sharply(int level, const Points& curve) const {
+  const std::shared_ptr<const SharpBends> bends = levels_.sharp_bends(level);
+  return bends && bends->along(curve);
+}
+
+void StartFinder::tabulate(Index num_pairs) {
+  if (!levels_.exist()) return;
+  const Index dim = surface_.dim() - surface_.codim();
+  const bool suits = dim == 2 && options_.march == MarchMethod::convergent && !options_.all && options_.cell == 0 &&
+                     options_.method != CorrectionMethod::grid && !options_.keep_cells;
+  if (levels_.lazy()) return;
+  const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
+  if (table_ || !suits) return;
+  const auto num_fine = static_cast<double>(fine->num_valid());
+  const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
+  std::optional<MarchCheck> check;
+  // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
+  for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); !table_; coarser /= kRefinement) {
+    const bool finest = coarser <= 1;
+    std::shared_ptr<SurfaceCells> cells = levels_.subdivided(std::max(1.0, coarser) * levels_.size(0));
+    if (!cells) return;
+    NormalTurns turns(*cells, context_);
+    const double turn = turns.quantile(kTurnQuantile);
+    if ((turn > kTableTurn || !turns.make_a_sheet()) && !finest) continue;
+    if (!turns.make_a_sheet()) return;
+    if (!finest) {
+      if (!check) check.emplace(surface_, *fine, context_);
+      if (check->quantile(*cells, kCheckedPart) > kMostOff) continue;
+    }
+    const auto num_cells = static_cast<double>(cells->num_valid());
+    const double num_landmarks =
+        std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
+    if (num_landmarks * num_cells > most_work) return;
+    DistanceTable table(surface_, std::move(*cells), static_cast<Index>(num_landmarks), context_);
+    const TableError error = measure_error(table);
+    const double wrong = std::max(error.too_long, error.too_short);
+    if (wrong > kMostWrong && !finest) continue;
+    table_ = std::move(table);
+    table_error_ = std::clamp(kSafety * wrong, kLeastTableError, kExcess);
+    table_doubt_ = std::clamp(kDoubtSafety * error.too_short, kLeastTableDoubt, kMostTableDoubt);
+  }
+}
+
+/// How wrong a table is: the worst of some ways between landmarks far apart.
+StartFinder::TableError StartFinder::measure_error(const DistanceTable& table) const {
+  NewtonSolver newton(surface_, {.tolerance = kCalibrationTolerance});
+  const Index n = table.num_landmarks();
+  TableError worst;
+  for (Index way = 0; way < kCalibrationWays; ++way) {
+    const Index from = way * n / kCalibrationWays;
+    for (Index other = 0; other < kCalibrationWays; ++other) {  // until one lies on the same component, and far enough
+      const Index to = (from + n / 2 + other * n / kCalibrationWays) % n;
+      const std::vector<StartPath> starts =
+          table.start_paths(table.landmark(from), table.landmark(to), {.excess = kLeastTableError, .max_paths = 1});
+      if (starts.empty()) continue;
+      const NewtonResult geodesic = newton.solve(starts.front().points, context_);
+      if (geodesic.status != Status::ok) continue;
+      const double error = starts.front().length / geodesic.length - 1;
+      worst.too_long = std::max(worst.too_long, error);
+      worst.too_short = std::max(worst.too_short, -error);
+      break;
+    }
+  }
+  return worst;
+}
+
+Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {
+  Starts starts;
+  if (!table_) return starts;
+  const Stopwatch watch;
+  starts.paths = table_->start_paths(p, q, {.excess = table_error_, .max_paths = kMostRivals});
+  starts.cell = table_->cells().grid().size();
+  starts.doubt = table_doubt_;
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+Starts StartFinder::walk(const Vector& p, const Vector& q) const {
+  const Stopwatch watch;
+  Starts starts;
+  Ways ways = find_ways(surface_, p, q, options_.all, context_);
+  starts.rivals_sought = ways.rivals_sought;
+  starts.error = kInfinity;  // how long a walk is says little
+  for (Points& way : ways.paths) {
+    const double length = polyline_length(way);
+    starts.paths.push_back({length, std::move(way)});
+  }
+  std::ranges::sort(starts.paths, {}, &StartPath::length);
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
+  if (!levels_.exist()) return walk(p, q);
+  const Stopwatch watch;
+  const Ground ground = this->ground(level, chord(p, q));
+  const double cells_seconds = watch.seconds();
+  // No rival is longer than this, by the table.
+  double longest = kInfinity;
+  if (table_) {
+    const double bound = table_->upper_bound(p, q);
+    longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * ground.cells->grid().size();
+  }
+  Starts starts = find_within(longest, ground, p, q);
+  // What the table's coarse cells took for a way may be none.
+  if (starts.paths.empty() && longest < kInfinity) starts = find_within(kInfinity, ground, p, q);
+  starts.seconds.cells += cells_seconds;
+  return starts;
+}
+
+Starts StartFinder::find_within(double longest, const Ground& ground, const Vector& p, const Vector& q) const {
+  const Stopwatch watch;
+  DistanceField from_p;
+  std::optional<DistanceField> from_q;
+  if (seeks_rivals() && !ground.cells->is_lazy() && (p - q).norm() > kNoRivals * ground.cells->grid().size()) {
+    from_q.emplace();
+    parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
+      if (first == 0) from_p = march_towards(ground, p, q, longest);
+      if (last == 2) from_q = march_towards(ground, q, p, longest);
+    });
+  } else {
+    from_p = march_towards(ground, p, q, longest);
+  }
+  const double march_seconds = watch.seconds();
+  Starts starts = continue_to(ground, from_p, q, std::move(from_q));
+  starts.seconds.march += march_seconds;
+  return starts;
+}
+
+bool StartFinder::seeks_rivals() const {
+  return options_.march == MarchMethod::convergent && options_.method != CorrectionMethod::grid;
+}
+
+DistanceField StartFinder::march_towards(const Ground& ground, const Vector& source, const Vector& target,
+                                         double longest) const {
+  MarchOptions march_options{.method = options_.march, .longest = longest};
+  if (!options_.all) march_options.target = target;
+  return march_over(surface_, *ground.cells, ground.map.get(), source, march_options, context_);
+}
+
+DistanceField StartFinder::march_all(const Ground& ground, const Vector& p) const {
+  return march(surface_, *ground.cells, p, MarchOptions{.method = options_.march}, context_);
+}
+
+Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
+                                std::optional<DistanceField> from_q) const {
+  const Stopwatch watch;
+  SurfaceCells& cells = *ground.cells;
+  Starts starts;
+  starts.cell = cells.grid().size();
+  const Vector p = from_p.sources.col(0);
+  const double distance = distance_at(surface_, cells, from_p, q)(0);
+  const bool arrives = std::isfinite(distance);
+  starts.marched = distance;
+  if (from_p.at_centres) starts.doubt = kInfinity;  // such distances are too long or too short by far
+  const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell);
+  starts.rivals_sought = arrives && seeks_rivals();
+  const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(chord(p, q));
+  if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
+  if (rivals) {
+    StartPathOptions options{.excess = kExcess, .max_paths = kMostRivals};
+    if (options_.all) options = {.excess = kInfinity, .max_paths = kMostWaysRound};
+    if (ground.bends && ground.bends->any()) options.spread = kSpreadOverBends;
+    starts.paths = start_paths_over(surface_, cells, ground.map.get(), from_p, *from_q, options, context_);
+  }
+  if ((rivals || at_spike) && ground.bends) add_past_bends(ground, from_p, *from_q, starts);
+  if (arrives && starts.paths.empty()) {
+    Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
+    if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
+  }
+  if (starts.paths.empty()) starts.barrier = find_barrier(cells, from_p, q);
+  starts.cells = ground.cells;
+  if (options_.keep_cells) starts.walked = walked_cells(cells.grid(), from_p, from_q);
+  starts.seconds.march = watch.seconds();
+  return starts;
+}
+
+/// Where the surface bends sharply, the ways by the fields may pass on the wrong side of a spike, and from its tip the
+/// march may come to nothing: more ways, that leave the ends there in all directions or step aside on the way.
+void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
+                                 Starts& starts) const {
+  const Vector p = from_p.sources.col(0);
+  const Vector q = from_q.sources.col(0);
+  const bool found = !starts.paths.empty();
+  const double most = found ? (1 + kExcess) * starts.paths.front().length : kMostDiagonals * levels_.box().diagonal();
+  const auto add = [&](std::vector<StartPath> more) { std::ranges::move(more, std::back_inserter(starts.paths)); };
+  if (found) add(side_steps(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
+  if (ground.bends->along(p)) add(fan_out(surface_, ground, p, from_q, most, context_));
+  if (ground.bends->along(q)) {
+    std::vector<StartPath> back = fan_out(surface_, ground, q, from_p, most, context_);
+    for (StartPath& start : back) start.points = start.points.rowwise().reverse().eval();
+    add(std::move(back));
+  }
+  std::ranges::stable_sort(starts.paths, {}, &StartPath::length);
+}
+
+bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const Vector& q) const {
+  if (!cells.is_lazy()) return in_two(*levels_.cells(level, chord(p, q)), *levels_.components(level), p, q);
+  return true;  // lazy cells have grown until there were no more
+}
+
+bool StartFinder::known_to_be_apart(int level, const Vector& p, const Vector& q) const {
+  const std::shared_ptr<const std::vector<std::int32_t>> labels = levels_.known_components(level);
+  return labels && in_two(*levels_.cells(level, chord(p, q)), *labels, p, q);
+}
+
+}  // namespace taut::detail
