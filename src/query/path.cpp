@@ -82,11 +82,18 @@ struct PathSolver::Impl {
   detail::PathSearch search;
   bool kinked;
   std::mutex facets_turn;
-  std::unique_ptr<detail::FacetSearch> facets;  // made where it is first needed
+  std::unique_ptr<detail::FacetSearch> facets;                    // made where it is first needed
+  bool facets_ready = false;                                      // for the points that are asked about now
+  std::vector<std::unique_ptr<detail::FacetSearch>> idle_facets;  // clones, of threads that are done with a pair
+  Box asked;                                                      // around the points that are asked about now
 
   [[nodiscard]] const detail::CellLevels& levels() const { return search.levels(); }
   /// The shortest path between points of the surface, whatever it is made of.
   [[nodiscard]] PathResult find(const Vector& p, const Vector& q, Corrector& corrector);
+  /// Of what is asked now (d x n).
+  void expect_points(const PointsIn& near);
+  /// Null where the surface is none of faces.
+  [[nodiscard]] std::unique_ptr<detail::FacetSearch> facet_worker();
   /// What the search for surfaces of faces, edges and borders finds; nothing where it cannot be asked.
   [[nodiscard]] std::optional<PathResult> over_faces(const Vector& p, const Vector& q);
   /// `found` on a smooth surface, or the path along its border where that one meets it.
@@ -144,11 +151,37 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
   return results;
 }
 
-std::optional<PathResult> PathSolver::Impl::over_faces(const Vector& p, const Vector& q) {
+void PathSolver::Impl::expect_points(const PointsIn& near) {
+  search.prepare(near);
+  if (near.cols() > 0) asked = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
+  facets_ready = false;
+}
+
+/// A graph made for all that is asked about now is shared; which thread looks for which pair changes nothing.
+std::unique_ptr<detail::FacetSearch> PathSolver::Impl::facet_worker() {
   const std::scoped_lock lock(facets_turn);
   if (!facets) facets = std::make_unique<detail::FacetSearch>(surface, options, context);
-  if (!facets->is_ready()) return std::nullopt;
-  return facets->find(p, q, levels().extent());
+  if (!facets->is_ready()) return nullptr;
+  if (!facets_ready) {
+    if (facets->prepare(levels().extent(), asked)) idle_facets.clear();
+    facets_ready = true;
+  }
+  if (idle_facets.empty()) return facets->clone();
+  std::unique_ptr<detail::FacetSearch> worker = std::move(idle_facets.back());
+  idle_facets.pop_back();
+  return worker;
+}
+
+std::optional<PathResult> PathSolver::Impl::over_faces(const Vector& p, const Vector& q) {
+  const detail::Stopwatch watch;
+  std::unique_ptr<detail::FacetSearch> worker = facet_worker();
+  if (!worker) return std::nullopt;
+  const double prepared = watch.seconds();
+  PathResult found = worker->find(p, q, levels().extent());
+  found.seconds.cells += prepared;
+  const std::scoped_lock lock(facets_turn);
+  idle_facets.push_back(std::move(worker));
+  return found;
 }
 
 PathResult PathSolver::Impl::along_border(PathResult found) {
@@ -182,7 +215,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   detail::check_point(impl.surface, p, "start");
   detail::check_point(impl.surface, q, "end");
   const detail::Stopwatch watch;
-  impl.search.prepare(detail::chord(p, q));
+  impl.expect_points(detail::chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
   PathResult result = impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
@@ -192,7 +225,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
 
 void PathSolver::expect(const PointsIn& near, Index num_pairs) {
   Impl& impl = *impl_;
-  impl.search.prepare(finite_columns(near, impl.surface.dim()));
+  impl.expect_points(finite_columns(near, impl.surface.dim()));
   if (!impl.kinked) impl.search.tabulate(num_pairs);
 }
 
@@ -205,7 +238,7 @@ std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const Poin
   Points both(from.rows(), 2 * from.cols());
   both << from, to;
   expect(both, from.cols());
-  return impl.for_all(from.cols(), !impl.kinked, [&](Index j, Impl::Corrector& corrector) {
+  return impl.for_all(from.cols(), true, [&](Index j, Impl::Corrector& corrector) {
     detail::check_point(impl.surface, from.col(j), "start");
     detail::check_point(impl.surface, to.col(j), "end");
     return impl.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
@@ -218,14 +251,14 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   detail::check_point(impl.surface, p, "start");
   Points all(p.size(), 1 + (targets.rows() == p.size() ? targets.cols() : 0));
   all << p, targets.leftCols(all.cols() - 1);
-  impl.search.prepare(finite_columns(all, impl.surface.dim()));
+  impl.expect_points(finite_columns(all, impl.surface.dim()));
   const Vector from = impl.levels().on_surface(p, "start");
   const auto target = [&](Index j) {
     detail::check_point(impl.surface, targets.col(j), "end");
     return impl.levels().on_surface(targets.col(j), "end");
   };
   if (!impl.levels().exist() || impl.levels().lazy() || impl.kinked) {
-    return impl.for_all(targets.cols(), !impl.kinked,
+    return impl.for_all(targets.cols(), true,
                         [&](Index j, Impl::Corrector& corrector) { return impl.find(from, target(j), corrector); });
   }
   PathSeconds shared;

@@ -34,8 +34,22 @@ constexpr double kAllSlack = 3;
 /// A path is at least so many cells long, or the graph is made again around it.
 constexpr double kCellsAlong = 8;
 constexpr int kMostGraphs = 8;
+/// A graph of a whole surface reaches so far beyond it, of its size.
+constexpr double kMargin = 1e-3;
+/// Where the surface goes on, a graph reaches so far beyond the points, of the diagonal of their box; one that is there
+/// already is good enough if it reaches so far.
+constexpr double kAround = 0.6;
+constexpr double kLeastAround = 0.1;
+/// Cells of a graph around one path, about: these are closer together.
+constexpr double kCellsAround = 1000;
 /// So many times as many cells where no way settled.
 constexpr double kFiner = 4;
+
+/// All of a surface that ends, and a little more.
+Box whole_box(const SurfaceExtent& extent) {
+  const Vector margin = Vector::Constant(3, kMargin * extent.box.diagonal());
+  return {extent.box.lower - margin, extent.box.upper + margin};
+}
 
 }  // namespace
 
@@ -47,19 +61,54 @@ FacetSearch::FacetSearch(const Surface& surface, const PathOptions& options, con
   surface_ = FacetedSurface::of(surface);
 }
 
-std::unique_ptr<FacetGraph> FacetSearch::graph(const Box& box, double cells) {
+std::shared_ptr<const FacetGraph> FacetSearch::graph(const Box& box, double cells) {
   surface_->scale = box.diagonal();
-  if (options_.cell > 0) return std::make_unique<FacetGraph>(*surface_, box, options_.cell, context_);
-  const double side = box.extent().maxCoeff();
-  const double first = side / kFirstCells;
-  const Index coarse = subdivide(surface_->surface(), {.size = first, .box = box}, context_).num_cells();
-  const double size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
-  return std::make_unique<FacetGraph>(*surface_, box, size, context_);
+  try {
+    double size = options_.cell;
+    if (size == 0) {
+      const double first = box.extent().maxCoeff() / kFirstCells;
+      const Index coarse = subdivide(surface_->surface(), {.size = first, .box = box}, context_).num_cells();
+      size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
+    }
+    return std::make_shared<const FacetGraph>(*surface_, box, size, context_);
+  } catch (const EmptySurface&) {
+    return nullptr;
+  }
+}
+
+bool FacetSearch::prepare(const SurfaceExtent& extent, const Box& points) {
+  if (!extent.endless.any()) {
+    if (shared_) return false;
+    shared_ = graph(whole_box(extent), kCells);
+  } else {
+    const auto around = [&](double part) {
+      const Vector reach = Vector::Constant(3, part * points.diagonal());
+      return intersection({points.lower - reach, points.upper + reach}, extent.whole);
+    };
+    // Of a graph made for other points, unless it is too coarse for these.
+    const Box least = around(kLeastAround);
+    if (shared_ && shared_->box().contains(least.lower) && shared_->box().contains(least.upper) &&
+        shared_->size() * kCellsAlong <= points.diagonal()) {
+      return false;
+    }
+    shared_ = graph(around(kAround), kCells);
+  }
+  known_ = surface_->known();
+  return true;
+}
+
+std::unique_ptr<FacetSearch> FacetSearch::clone() const {
+  std::unique_ptr<FacetSearch> copy(new FacetSearch(options_, context_));
+  copy->surface_ = surface_->clone();
+  copy->shared_ = shared_;
+  copy->known_ = known_;
+  return copy;
 }
 
 bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3& q, PathResult& result,
                           std::vector<Found>& found, double& shortest_way) {
   Stopwatch watch;
+  surface_->scale = graph.box().diagonal();
   const double slack = options_.all ? kAllSlack : 1 + kWaySlack;
   const std::vector<FacetWay> ways = ways_between(*surface_, graph, p, q, slack);
   result.seconds.march += watch.restart();
@@ -102,6 +151,12 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
 }
 
 PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExtent& extent) {
+  PathResult result = search(p, q, extent);
+  surface_->forget_since(known_);
+  return result;
+}
+
+PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceExtent& extent) {
   PathResult result;
   result.from = p;
   result.to = q;
@@ -111,17 +166,14 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     result.message = "the two points are the same";
     return result;
   }
-  std::unique_ptr<FacetGraph> own;
-  const FacetGraph* current = nullptr;
   const auto room = [&](double margin) {
     const Vector reach = Vector::Constant(3, margin);
     return intersection({p.cwiseMin(q) - reach, p.cwiseMax(q) + reach}, extent.whole);
   };
-  Box box = ends ? Box{extent.box.lower, extent.box.upper} : room(apart);
-  if (ends) {
-    const Vector margin = Vector::Constant(3, 1e-3 * box.diagonal());
-    box = {box.lower - margin, box.upper + margin};
-  }
+  Box box = ends ? whole_box(extent) : room(apart);
+  // The shared graph first, where it holds both ends.
+  std::shared_ptr<const FacetGraph> current = shared_;
+  if (current != nullptr && !ends && !(current->box().contains(p) && current->box().contains(q))) current = nullptr;
   std::vector<Found> found;
   bool solved = false;
   double grown = apart;
@@ -130,20 +182,11 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
   std::vector<Found> first_try_found;
   std::string first_try_message;
   for (int round = 0; round < kMostGraphs; ++round) {
-    const Stopwatch watch;
-    try {
-      if (ends && round == 0) {
-        surface_->scale = box.diagonal();
-        if (!whole_) whole_ = graph(box, cells);
-        current = whole_.get();
-      } else {
-        own = graph(box, cells);
-        current = own.get();
-      }
-    } catch (const EmptySurface&) {
-      current = nullptr;
+    if (round > 0 || current == nullptr) {
+      const Stopwatch watch;
+      current = graph(box, cells);
+      result.seconds.cells += watch.seconds();
     }
-    result.seconds.cells += watch.seconds();
     double way = 0;
     solved = current != nullptr && correct(*current, p, q, result, found, way);
     if (!solved && !first_try) {
@@ -155,19 +198,19 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
     if (!solved && way > 0) {
       // There are ways, but none settled: on finer cells, around them.
       if (cells > kCells) break;
-      cells *= kFiner;
+      cells = kFiner * kCells;
       box = intersection(box_of_shorter_paths(p, q, (1 + kWaySlack) * way), ends ? box : extent.whole);
       continue;
     }
     if (!solved) {
       if (ends) break;
-      grown *= 2;
+      if (round > 0 || shared_ == nullptr) grown *= 2;
+      cells = kCells;
       box = room(grown);
       continue;
     }
     const double length = found.front().chain.length;
-    Box needed = box_of_shorter_paths(p, q, length);
-    needed = intersection(needed, ends ? box : extent.whole);
+    const Box needed = intersection(box_of_shorter_paths(p, q, length), ends ? whole_box(extent) : extent.whole);
     const bool holds = current->box().contains(needed.lower) && current->box().contains(needed.upper);
     const bool fine = current->size() <= length / kCellsAlong;
     if (holds && (fine || options_.cell > 0)) {
@@ -183,7 +226,7 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
       first_try = false;
       first_try_found = found;
       first_try_message = result.message;
-      cells *= kFiner;
+      cells = kFiner * kCells;
       box = needed;
       continue;
     }
@@ -192,6 +235,7 @@ PathResult FacetSearch::find(const Vector& p, const Vector& q, const SurfaceExte
       break;
     }
     if (holds && needed.extent().maxCoeff() > 0.7 * current->box().extent().maxCoeff()) break;
+    cells = std::max(cells == kCells ? kCellsAround : cells, kCellsAround);
     box = needed;
   }
   if (current != nullptr) {

@@ -36,6 +36,18 @@ bool trace_edge_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, con
     }
   }
   marks.push_back(b);
+  // The more marks, the more pieces: one that is in line with its neighbours is not wanted.
+  std::vector<Point3> kept{a};
+  for (std::size_t i = 1; i + 1 < marks.size(); ++i) {
+    const Point3 ahead = (marks[i + 1] - kept.back()).normalized();
+    constexpr double kInLine = 0.99;  // cosine
+    if (std::abs(surface.tangent(arc.edge, kept.back()).dot(ahead)) < kInLine ||
+        std::abs(surface.tangent(arc.edge, marks[i + 1]).dot(ahead)) < kInLine) {
+      kept.push_back(marks[i]);
+    }
+  }
+  kept.push_back(b);
+  marks = std::move(kept);
   // Abscissae and weights of Gauss's rule with 8 points on [0, 1].
   static constexpr double kNode[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
   static constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
@@ -74,7 +86,8 @@ bool trace_edge_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, con
         return true;
       };
       if (!on_edge(0.5, middle)) return false;
-      constexpr double kStraight = 0.995;  // cos of 6 degrees: eight points then reach rounding
+      // The integrand's poles lie where the edge would be across the chord: eight points then reach 1e-15.
+      constexpr double kStraight = 0.98;  // cos of 11 degrees
       const double mid = std::abs(surface.tangent(arc.edge, middle).dot(e));
       if (std::min({begin, end, mid}) < kStraight || (middle - (from + to) / 2).norm() > 0.1 * chord_length) {
         if (--budget < 0) return false;
@@ -84,13 +97,14 @@ bool trace_edge_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, con
       }
       double sum = 0;
       for (int g = 0; g < 8; ++g) {
-        const double u = 0.5 + (g < 4 ? -0.5 : 0.5) * kNode[g % 4];
+        const int node = g < 4 ? 3 - g : g - 4;  // from one end to the other
+        const double u = 0.5 + (g < 4 ? -0.5 : 0.5) * kNode[node];
         Point3 x = from + u * (to - from) + 4 * u * (1 - u) * (middle - (from + to) / 2);
         if (!on_edge(u, x)) return false;
-        sum += 0.5 * kWeight[g % 4] / std::abs(surface.tangent(arc.edge, x).dot(e));
+        line.push_back(x);
+        sum += 0.5 * kWeight[node] / std::abs(surface.tangent(arc.edge, x).dot(e));
       }
       length += sum * chord_length;
-      line.push_back(middle);
       line.push_back(to);
     }
   }

@@ -63,7 +63,8 @@ std::unique_ptr<FacetedSurface> FacetedSurface::of(const Surface& surface) {
   std::unique_ptr<FacetedSurface> result(new FacetedSurface(surface));
   if (kinks) {
     result->num_kinks_ = static_cast<int>(kinks->num_kinks());
-    result->conditions_ = kinks->conditions()->make_evaluator();
+    result->conditions_function_ = kinks->conditions();
+    result->conditions_ = result->conditions_function_->make_evaluator();
     result->kinks_ = std::move(kinks);
   }
   if (surface.domain() != nullptr) {
@@ -71,6 +72,56 @@ std::unique_ptr<FacetedSurface> FacetedSurface::of(const Surface& surface) {
     result->domain_ = surface.domain()->make_evaluator();
   }
   return result;
+}
+
+std::unique_ptr<FacetedSurface> FacetedSurface::clone() const {
+  std::unique_ptr<FacetedSurface> copy(new FacetedSurface(surface_));
+  copy->scale = scale;
+  copy->num_kinks_ = num_kinks_;
+  copy->num_domain_ = num_domain_;
+  if (kinks_) {
+    copy->kinks_ = std::make_unique<FormulaKinks>(*kinks_);
+    copy->conditions_function_ = conditions_function_;
+    copy->conditions_ = conditions_function_->make_evaluator();
+  }
+  if (domain_) copy->domain_ = surface_.domain()->make_evaluator();
+  for (const std::unique_ptr<SmoothFace>& face : faces_) {
+    copy->faces_.push_back(std::make_unique<SmoothFace>(face->surface));
+    copy->faces_.back()->text = face->text;
+    copy->faces_.back()->flat = face->flat;
+  }
+  for (const Condition& c : smooth_) {
+    copy->smooth_.push_back(
+        {c.function, (c.function ? *c.function : *surface_.domain()).make_evaluator(), c.component, c.count, c.flat});
+  }
+  copy->face_of_sides_ = face_of_sides_;
+  copy->face_of_roots_ = face_of_roots_;
+  copy->smooth_of_ = smooth_of_;
+  copy->smooth_of_sides_ = smooth_of_sides_;
+  copy->edges_ = edges_;
+  copy->edge_of_ = edge_of_;
+  return copy;
+}
+
+void FacetedSurface::forget_since(const Known& known) {
+  const auto forget = [](auto& map, std::size_t count) {
+    std::erase_if(map, [&](const auto& entry) { return static_cast<std::size_t>(entry.second) >= count; });
+  };
+  if (faces_.size() > known.faces) {
+    faces_.resize(known.faces);
+    forget(face_of_sides_, known.faces);
+    forget(face_of_roots_, known.faces);
+    last_face_ = -1;
+  }
+  if (smooth_.size() > known.conditions) {
+    smooth_.erase(smooth_.begin() + static_cast<std::ptrdiff_t>(known.conditions), smooth_.end());
+    forget(smooth_of_, known.conditions);
+    forget(smooth_of_sides_, known.conditions);
+  }
+  if (edges_.size() > known.edges) {
+    edges_.resize(known.edges);
+    forget(edge_of_, known.edges);
+  }
 }
 
 void FacetedSurface::undecided(const Box& box, std::vector<int>& found) {
@@ -211,7 +262,7 @@ int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides
     const auto [at, added] = smooth_of_.try_emplace({1, static_cast<NodeId>(index - num_kinks_)}, 0);
     if (added) {
       at->second = static_cast<int>(smooth_.size());
-      Condition made{surface_.domain()->make_evaluator(), index - num_kinks_, num_domain_};
+      Condition made{nullptr, surface_.domain()->make_evaluator(), index - num_kinks_, num_domain_};
       if (affine_components(*surface_.domain())[static_cast<std::size_t>(made.component)]) {
         made.flat = affine_form(*made.evaluator, made.count, made.component);
       }
@@ -226,7 +277,7 @@ int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides
   if (added) {
     at->second = static_cast<int>(smooth_.size());
     const std::shared_ptr<const ImplicitFunction> function = kinks_->function({node});
-    Condition made{function->make_evaluator(), 0, 1};
+    Condition made{function, function->make_evaluator(), 0, 1};
     if (affine_components(*function).front()) made.flat = affine_form(*made.evaluator, 1, 0);
     smooth_.push_back(std::move(made));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <map>
 #include <memory>
 #include <optional>
@@ -67,6 +68,18 @@ class FacetedSurface {
   /// Null for smooth surfaces without domain, and for those that are not handled: other dimensions, kinks in a domain.
   [[nodiscard]] static std::unique_ptr<FacetedSurface> of(const Surface& surface);
 
+  /// The same for another thread: the same numbers of faces and edges so far.
+  [[nodiscard]] std::unique_ptr<FacetedSurface> clone() const;
+  /// How much is known of it.
+  struct Known {
+    std::size_t faces = 0;
+    std::size_t conditions = 0;
+    std::size_t edges = 0;
+  };
+  [[nodiscard]] Known known() const { return {faces_.size(), smooth_.size(), edges_.size()}; }
+  /// Forgets what was found since: so that no answer depends on the questions before it.
+  void forget_since(const Known& known);
+
   [[nodiscard]] const Surface& surface() const { return surface_; }
   [[nodiscard]] SmoothFace& face(int i) { return *faces_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const SharpEdge& edge(int i) const { return edges_[static_cast<std::size_t>(i)]; }
@@ -106,6 +119,7 @@ class FacetedSurface {
 
  private:
   struct Condition {
+    std::shared_ptr<const ImplicitFunction> function;  // null: the domain
     std::unique_ptr<Evaluator> evaluator;
     int component = 0;
     int count = 1;
@@ -120,6 +134,7 @@ class FacetedSurface {
 
   Surface surface_;
   std::unique_ptr<FormulaKinks> kinks_;  // null: only a domain
+  std::shared_ptr<const ImplicitFunction> conditions_function_;
   std::unique_ptr<Evaluator> conditions_;
   std::unique_ptr<Evaluator> domain_;
   int num_kinks_ = 0;

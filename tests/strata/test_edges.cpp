@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "taut/query/path.hpp"
 #include "taut/surface/formula.hpp"
@@ -220,6 +221,31 @@ TEST(Edges, SymmetryAndTriangle) {
   EXPECT_NEAR(solver.solve(b, a).length, ab, 1e-12);
   EXPECT_LE(ac, ab + bc + 1e-12);
   EXPECT_LE(ab, ac + bc + 1e-12);
+}
+
+TEST(Edges, ManyPairsAreThoseAloneOnAnyThreads) {
+  Points from(3, 20);
+  Points to(3, 20);
+  for (Index j = 0; j < 20; ++j) {
+    const double a = 0.7 * static_cast<double>(j);
+    from.col(j) << 2 * std::cos(a), 2 * std::sin(a), 0.09 * static_cast<double>(j) - 0.9;
+    to.col(j) << std::cos(2 * a), std::sin(3 * a), j % 2 == 0 ? 1 : -1;
+  }
+  const auto solve = [&](Index threads) {
+    Context context;
+    context.threads = static_cast<int>(threads);
+    return PathSolver(parse_surface(kCan), {}, context).solve_pairs(from, to);
+  };
+  const std::vector<PathResult> one = solve(1);
+  const std::vector<PathResult> two = solve(2);
+  PathSolver alone(parse_surface(kCan));
+  for (Index j = 0; j < 20; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    EXPECT_EQ(one[i].status, Status::ok) << one[i].message;
+    EXPECT_EQ(one[i].length, two[i].length);
+    EXPECT_EQ(one[i].points, two[i].points);
+    EXPECT_EQ(one[i].length, alone.solve(from.col(j), to.col(j)).length);
+  }
 }
 
 }  // namespace
