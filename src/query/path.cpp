@@ -204,7 +204,7 @@ PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& c
   if (other.status == Status::ok && other.message.empty() && other.corrected) {
     other.message = found ? fmt::format("a shorter path may exist: {}", found->message)
                           : "a shorter path may exist: over the edges of this surface it is looked for by Newton's "
-                            "method on the convergent march only, and where the domain has no kinks";
+                            "method on the convergent march only";
     other.rivals_sought = false;
   }
   return other;

@@ -57,12 +57,12 @@ double second_derivative(Evaluator& evaluator, int count, int i, const Point3& x
 
 std::unique_ptr<FacetedSurface> FacetedSurface::of(const Surface& surface) {
   if (surface.dim() != 3 || surface.codim() != 1) return nullptr;
-  std::unique_ptr<FormulaKinks> kinks = FormulaKinks::of(surface.function());
+  std::unique_ptr<FormulaKinks> kinks = FormulaKinks::of(surface.function(), surface.domain());
   if (!kinks && surface.domain() == nullptr) return nullptr;
-  if (surface.domain() != nullptr && FormulaKinks::of(*surface.domain())) return nullptr;
   std::unique_ptr<FacetedSurface> result(new FacetedSurface(surface));
   if (kinks) {
     result->num_kinks_ = static_cast<int>(kinks->num_kinks());
+    result->first_in_domain_ = static_cast<int>(kinks->first_in_domain());
     result->conditions_function_ = kinks->conditions();
     result->conditions_ = result->conditions_function_->make_evaluator();
     result->kinks_ = std::move(kinks);
@@ -78,6 +78,7 @@ std::unique_ptr<FacetedSurface> FacetedSurface::clone() const {
   std::unique_ptr<FacetedSurface> copy(new FacetedSurface(surface_));
   copy->scale = scale;
   copy->num_kinks_ = num_kinks_;
+  copy->first_in_domain_ = first_in_domain_;
   copy->num_domain_ = num_domain_;
   if (kinks_) {
     copy->kinks_ = std::make_unique<FormulaKinks>(*kinks_);
@@ -141,6 +142,12 @@ void FacetedSurface::undecided(const Box& box, std::vector<int>& found) {
   };
   look(conditions_.get(), num_kinks_, 0);
   look(domain_.get(), num_domain_, num_kinks_);
+  drop_idle_kinks(found);
+}
+
+void FacetedSurface::drop_idle_kinks(std::vector<int>& conditions) const {
+  if (std::any_of(conditions.begin(), conditions.end(), [&](int i) { return i >= num_kinks_; })) return;
+  std::erase_if(conditions, [&](int i) { return i >= first_in_domain_; });
 }
 
 void FacetedSurface::evaluate_conditions(const Point3& x, Eigen::VectorXd& value,
@@ -168,14 +175,14 @@ int FacetedSurface::face_of(const FormulaKinks::Sides& sides) {
   auto found = face_of_roots_.find(roots);
   if (found == face_of_roots_.end()) {
     std::shared_ptr<const ImplicitFunction> function;
-    if (kinks_) {
+    if (!roots.empty()) {
       function = kinks_->function(roots);
     } else {
       function = std::shared_ptr<const ImplicitFunction>(std::make_shared<Surface>(surface_), &surface_.function());
     }
     faces_.push_back(std::make_unique<SmoothFace>(Surface(std::move(function))));
     SmoothFace& made = *faces_.back();
-    if (kinks_) made.text = kinks_->text(roots.front());
+    if (!roots.empty()) made.text = kinks_->text(roots.front());
     if (affine_components(made.surface.function()).front()) made.flat = affine_form(*made.evaluator, 1, 0);
     found = face_of_roots_.emplace(roots, static_cast<int>(faces_.size()) - 1).first;
   }
@@ -228,8 +235,8 @@ double FacetedSurface::violation(int face, const Point3& x, int* condition) {
   }
   if (!same) {
     // The nearest kinks whose other sides lead to the face: choices in the order of their farthest kink.
-    std::vector<int> order(static_cast<std::size_t>(num_kinks_));
-    for (int i = 0; i < num_kinks_; ++i) order[static_cast<std::size_t>(i)] = i;
+    std::vector<int> order(static_cast<std::size_t>(first_in_domain_));
+    for (int i = 0; i < first_in_domain_; ++i) order[static_cast<std::size_t>(i)] = i;
     std::sort(order.begin(), order.end(), [&](int i, int j) { return distance(i) < distance(j); });
     if (order.size() > kMostAtAPoint) order.resize(kMostAtAPoint);
     double least = std::numeric_limits<double>::infinity();
@@ -258,7 +265,7 @@ double FacetedSurface::violation(int face, const Point3& x, int* condition) {
 }
 
 int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides) {
-  if (index >= num_kinks_) {
+  if (index >= num_kinks_ && !(kinks_ && kinks_->in_domain())) {
     const auto [at, added] = smooth_of_.try_emplace({1, static_cast<NodeId>(index - num_kinks_)}, 0);
     if (added) {
       at->second = static_cast<int>(smooth_.size());
@@ -272,7 +279,7 @@ int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides
   }
   const auto [known, unknown] = smooth_of_sides_.try_emplace({index, sides}, 0);
   if (!unknown) return known->second;
-  const NodeId node = kinks_->condition(index, sides);
+  const NodeId node = index < num_kinks_ ? kinks_->condition(index, sides) : kinks_->bound(index - num_kinks_, sides);
   const auto [at, added] = smooth_of_.try_emplace({0, node}, 0);
   if (added) {
     at->second = static_cast<int>(smooth_.size());
@@ -436,6 +443,7 @@ std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
       return std::nullopt;  // outside the domain
     }
   }
+  drop_idle_kinks(zero);
   std::vector<int> flips;
   for (const int i : zero) {
     if (i < num_kinks_) flips.push_back(i);

@@ -65,7 +65,7 @@ struct Star {
 /// by a domain. Faces are found as they are met. One thread's.
 class FacetedSurface {
  public:
-  /// Null for smooth surfaces without domain, and for those that are not handled: other dimensions, kinks in a domain.
+  /// Null for smooth surfaces without domain, and for those that are not handled: other dimensions.
   [[nodiscard]] static std::unique_ptr<FacetedSurface> of(const Surface& surface);
 
   /// The same for another thread: the same numbers of faces and edges so far.
@@ -84,7 +84,7 @@ class FacetedSurface {
   [[nodiscard]] SmoothFace& face(int i) { return *faces_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] const SharpEdge& edge(int i) const { return edges_[static_cast<std::size_t>(i)]; }
   [[nodiscard]] int num_conditions() const { return num_kinks_ + num_domain_; }
-  /// Kinks, then the components of the domain.
+  /// Kinks, of the formula and in the domain; the components of the domain come after them.
   [[nodiscard]] int num_kinks() const { return num_kinks_; }
   /// The conditions that may change their sign within the box, by bounds; all where there are none.
   void undecided(const Box& box, std::vector<int>& found);
@@ -129,15 +129,18 @@ class FacetedSurface {
   [[nodiscard]] int face_of(const FormulaKinks::Sides& sides);
   /// The sides at x; values of the conditions in `values_`.
   const FormulaKinks::Sides& sides_at(const Point3& x);
+  /// Kinks of the domain matter only next to its border.
+  void drop_idle_kinks(std::vector<int>& conditions) const;
   [[nodiscard]] int edge_of(int a, int b, int condition);
   void evaluate_conditions(const Point3& x, Eigen::VectorXd& value, Eigen::Matrix<double, 3, Eigen::Dynamic>* gradient);
 
   Surface surface_;
-  std::unique_ptr<FormulaKinks> kinks_;  // null: only a domain
+  std::unique_ptr<FormulaKinks> kinks_;  // null: only a smooth domain
   std::shared_ptr<const ImplicitFunction> conditions_function_;
   std::unique_ptr<Evaluator> conditions_;
   std::unique_ptr<Evaluator> domain_;
   int num_kinks_ = 0;
+  int first_in_domain_ = 0;
   int num_domain_ = 0;
   std::vector<std::unique_ptr<SmoothFace>> faces_;
   std::map<FormulaKinks::Sides, int> face_of_sides_;

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -47,25 +48,68 @@ std::string_view name_of(Op op) {
   }
 }
 
+/// The node with other operands, in a graph that may be another one.
+template <class Image>
+NodeId rebuilt(Graph& graph, const Node& node, const Image& of) {
+  switch (node.op) {
+    case Op::constant: return graph.constant(node.value);
+    case Op::variable: return graph.variable(node.a);
+    case Op::negate: return graph.negate(of(node.a));
+    case Op::square: return graph.square(of(node.a));
+    case Op::odd_power: return graph.power(of(node.a), graph.constant(node.b));
+    case Op::add: return graph.add(of(node.a), of(node.b));
+    case Op::subtract: return graph.subtract(of(node.a), of(node.b));
+    case Op::multiply: return graph.multiply(of(node.a), of(node.b));
+    case Op::divide: return graph.divide(of(node.a), of(node.b));
+    case Op::power: return graph.power(of(node.a), of(node.b));
+    default:
+      return operand_count(node.op) == 1 ? graph.unary(node.op, of(node.a))
+                                         : graph.binary(node.op, of(node.a), of(node.b));
+  }
+}
+
 }  // namespace
 
-std::unique_ptr<FormulaKinks> FormulaKinks::of(const ImplicitFunction& function) {
+std::unique_ptr<FormulaKinks> FormulaKinks::of(const ImplicitFunction& function, const ImplicitFunction* domain) {
   const auto* formula = dynamic_cast<const FormulaFunction*>(&function);
-  if (formula == nullptr || !formula->program().has_kinks()) return nullptr;
-  auto [graph, components] = formula->program().expressions();
-  std::unique_ptr<FormulaKinks> kinks(new FormulaKinks(std::move(graph), std::move(components), function.dim()));
+  const auto* cut = dynamic_cast<const FormulaFunction*>(domain);
+  const bool kinked_domain = cut != nullptr && cut->program().has_kinks();
+  if (!kinked_domain && (formula == nullptr || !formula->program().has_kinks())) return nullptr;
+  Graph graph;
+  std::vector<NodeId> components;
+  if (formula != nullptr) std::tie(graph, components) = formula->program().expressions();
+  std::vector<NodeId> bounds;
+  const std::size_t num_of_formula = graph.size();
+  if (kinked_domain) {
+    const auto [other, roots] = cut->program().expressions();
+    std::unordered_map<NodeId, NodeId> image;
+    for (const NodeId id : other.reachable(roots)) {
+      image[id] = rebuilt(graph, other[id], [&](NodeId operand) { return image.at(operand); });
+    }
+    for (const NodeId root : roots) bounds.push_back(image.at(root));
+  }
+  std::unique_ptr<FormulaKinks> kinks(
+      new FormulaKinks(std::move(graph), std::move(components), std::move(bounds), num_of_formula, function.dim()));
   return kinks->num_kinks() > 0 ? std::move(kinks) : nullptr;
 }
 
-FormulaKinks::FormulaKinks(Graph graph, std::vector<NodeId> components, Index dim)
-    : graph_(std::move(graph)), components_(std::move(components)), num_parsed_(graph_.size()), dim_(dim) {
-  for (const NodeId id : graph_.reachable(components_)) {
+FormulaKinks::FormulaKinks(Graph graph, std::vector<NodeId> components, std::vector<NodeId> domain,
+                           std::size_t num_of_formula, Index dim)
+    : graph_(std::move(graph)),
+      components_(std::move(components)),
+      domain_(std::move(domain)),
+      num_parsed_(graph_.size()),
+      dim_(dim) {
+  std::vector<NodeId> roots = components_;
+  roots.insert(roots.end(), domain_.begin(), domain_.end());
+  for (const NodeId id : graph_.reachable(roots)) {
     const Node node = graph_[id];
     if (!is_kink(node.op)) continue;
     NodeId condition = node.a;
     if (node.op == Op::maximum) condition = graph_.subtract(node.a, node.b);
     if (node.op == Op::minimum) condition = graph_.subtract(node.b, node.a);
     kinks_.push_back({id, condition});
+    if (id < num_of_formula) ++first_in_domain_;
   }
 }
 
@@ -97,23 +141,9 @@ NodeId FormulaKinks::smooth(NodeId root, const Sides& sides) {
       } else {
         result = first ? of(node.a) : of(node.b);
       }
-    } else if (node.op == Op::odd_power) {
-      if (of(node.a) != node.a) result = graph_.power(of(node.a), graph_.constant(node.b));
-    } else if (operands > 0) {
-      const bool changed = of(node.a) != node.a || (operands > 1 && of(node.b) != node.b);
-      if (changed) {
-        switch (node.op) {
-          case Op::negate: result = graph_.negate(of(node.a)); break;
-          case Op::square: result = graph_.square(of(node.a)); break;
-          case Op::add: result = graph_.add(of(node.a), of(node.b)); break;
-          case Op::subtract: result = graph_.subtract(of(node.a), of(node.b)); break;
-          case Op::multiply: result = graph_.multiply(of(node.a), of(node.b)); break;
-          case Op::divide: result = graph_.divide(of(node.a), of(node.b)); break;
-          case Op::power: result = graph_.power(of(node.a), of(node.b)); break;
-          default:
-            result = operands == 1 ? graph_.unary(node.op, of(node.a)) : graph_.binary(node.op, of(node.a), of(node.b));
-        }
-      }
+    } else {
+      const bool changed = operands > 0 && (of(node.a) != node.a || (operands > 1 && of(node.b) != node.b));
+      if (changed) result = rebuilt(graph_, node, of);
     }
     image[id] = result;
   }
@@ -126,9 +156,14 @@ std::vector<NodeId> FormulaKinks::face(const Sides& sides) {
   return roots;
 }
 
+NodeId FormulaKinks::bound(Index component, const Sides& sides) {
+  return smooth(domain_[static_cast<std::size_t>(component)], sides);
+}
+
 std::vector<int> FormulaKinks::taken(const Sides& sides) const {
   std::vector<bool> seen(num_parsed_);
   std::vector<NodeId> open = components_;
+  open.insert(open.end(), domain_.begin(), domain_.end());
   std::vector<int> found;
   while (!open.empty()) {
     const NodeId id = open.back();
