@@ -1,8 +1,12 @@
-// The arc of a chain along an edge.
+// The arc of a chain along an edge: pieces between points of it, each a graph over its chord. The length of a piece is
+// the integral of 1 / |t . e| over the chord (t the edge's tangent, e the chord's direction) by Gauss's rule with eight
+// points. Those points also tell the integrand's Legendre coefficients, whose decay says how good the rule is: where
+// the last two are not small, the piece is halved.
 #include "strata/edge_arc.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,113 +15,175 @@
 #include "strata/chain_tolerances.hpp"
 
 namespace taut::detail {
+namespace {
 
-/// Pieces of the edge between points of it, each a graph over its chord: the length by Gauss's rule.
-bool trace_edge_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, const Point3& b) {
-  const double together = ChainTolerances::together * surface.scale;
-  const SharpEdge edge = surface.edge(arc.edge);
-  std::vector<Point3> marks{a};
-  // Marks that the ends have passed are left out.
-  const Points& start = arc.start;
-  const Index count = start.cols();
-  if (count > 1) {
-    Point3 ta = surface.tangent(arc.edge, a);
-    Point3 tb = surface.tangent(arc.edge, b);
-    if (ta.dot(Point3(start.col(1) - start.col(0))) < 0) ta = -ta;
-    if (tb.dot(Point3(start.col(count - 1) - start.col(count - 2))) < 0) tb = -tb;
-    constexpr double kAhead = 0.02;  // cosine
-    for (Index i = 0; i < count; ++i) {
-      const Point3 x = start.col(i);
-      const double from_a = (x - a).norm();
-      const double from_b = (x - b).norm();
-      if (i < count / 2 && (x - a).dot(ta) <= kAhead * from_a + together) continue;
-      if (i >= count / 2 && (b - x).dot(tb) <= kAhead * from_b + together) continue;
-      marks.push_back(x);
+constexpr int kPoints = 8;
+/// Abscissae on [-1, 1] and weights, from one end to the other.
+constexpr std::array<double, kPoints> kNode = {-0.9602898564975363, -0.7966664774136267, -0.5255324099163290,
+                                               -0.1834346424956498, 0.1834346424956498,  0.5255324099163290,
+                                               0.7966664774136267,  0.9602898564975363};
+constexpr std::array<double, kPoints> kWeight = {0.1012285362903763, 0.2223810344533745, 0.3137066458778873,
+                                                 0.3626837833783620, 0.3626837833783620, 0.3137066458778873,
+                                                 0.2223810344533745, 0.1012285362903763};
+/// Coefficients fall like r^-n, and the rule's error like r^-16: where those of degree 6 and 7 are below this, that is
+/// rounding.
+constexpr double kResolved = 2e-6;
+/// A piece turns from its chord by no more than an angle with this cosine, and strays from it by this part.
+constexpr double kStraight = 0.9;
+constexpr double kStray = 0.2;
+/// Marks in line with their neighbours, cosine, are left out: the fewer pieces.
+constexpr double kInLine = 0.99;
+/// A mark lies ahead of an end of the arc, cosine.
+constexpr double kAhead = 0.02;
+/// Halvings of one arc.
+constexpr int kBudget = 400;
+constexpr int kMostSteps = 30;
+constexpr double kRounding = 1e-14;
+
+double legendre(int degree, double x) {
+  double before = 1;
+  double value = x;
+  for (int n = 1; n < degree; ++n) before = std::exchange(value, ((2 * n + 1) * x * value - n * before) / (n + 1));
+  return value;
+}
+
+class EdgeTracer {
+ public:
+  EdgeTracer(FacetedSurface& surface, int edge) : s_(surface), edge_(edge) {}
+
+  /// Points of the edge from a to b: those of `guide` between them, thinned out.
+  [[nodiscard]] std::vector<Point3> marks(const Points& guide, const Point3& a, const Point3& b) {
+    std::vector<Point3> all{a};
+    const Index count = guide.cols();
+    if (count > 1) {
+      const Point3 ta = towards(a, Point3(guide.col(1) - guide.col(0)));
+      const Point3 tb = towards(b, Point3(guide.col(count - 1) - guide.col(count - 2)));
+      const double together = ChainTolerances::together * s_.scale;
+      for (Index i = 0; i < count; ++i) {
+        const Point3 x = guide.col(i);
+        // Those that an end has passed are left out.
+        const bool ahead = i < count / 2 ? (x - a).dot(ta) > kAhead * (x - a).norm() + together
+                                         : (b - x).dot(tb) > kAhead * (b - x).norm() + together;
+        if (ahead) all.push_back(x);
+      }
     }
-  }
-  marks.push_back(b);
-  // The more marks, the more pieces: one that is in line with its neighbours is not wanted.
-  std::vector<Point3> kept{a};
-  for (std::size_t i = 1; i + 1 < marks.size(); ++i) {
-    const Point3 ahead = (marks[i + 1] - kept.back()).normalized();
-    constexpr double kInLine = 0.99;  // cosine
-    if (std::abs(surface.tangent(arc.edge, kept.back()).dot(ahead)) < kInLine ||
-        std::abs(surface.tangent(arc.edge, marks[i + 1]).dot(ahead)) < kInLine) {
-      kept.push_back(marks[i]);
+    all.push_back(b);
+    std::vector<Point3> kept{a};
+    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
+      const Point3 ahead = (all[i + 1] - kept.back()).normalized();
+      if (std::min(along(kept.back(), ahead), along(all[i + 1], ahead)) < kInLine) kept.push_back(all[i]);
     }
+    kept.push_back(b);
+    return kept;
   }
-  kept.push_back(b);
-  marks = std::move(kept);
-  // Abscissae and weights of Gauss's rule with 8 points on [0, 1].
-  static constexpr double kNode[4] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-  static constexpr double kWeight[4] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
-  double length = 0;
-  std::vector<Point3> line{a};
-  for (std::size_t i = 0; i + 1 < marks.size(); ++i) {
-    // Halved until the edge turns little.
-    std::vector<std::pair<Point3, Point3>> open{{marks[i], marks[i + 1]}};
-    int budget = 400;
+
+  /// The edge's tangent at x, on the side of v.
+  [[nodiscard]] Point3 towards(const Point3& x, const Point3& v) {
+    const Point3 t = s_.tangent(edge_, x);
+    return t.dot(v) < 0 ? Point3(-t) : t;
+  }
+
+  /// From one point of the edge to another. False where it cannot be followed.
+  [[nodiscard]] bool add(const Point3& from, const Point3& to) {
+    std::vector<std::pair<Point3, Point3>> open{{from, to}};
     while (!open.empty()) {
-      const auto [from, to] = open.back();
+      const auto [first, last] = open.back();
       open.pop_back();
-      const double chord_length = (to - from).norm();
-      if (chord_length <= 1e-14 * surface.scale) continue;
-      const Point3 e = (to - from) / chord_length;
-      const double begin = std::abs(surface.tangent(arc.edge, from).dot(e));
-      const double end = std::abs(surface.tangent(arc.edge, to).dot(e));
-      Point3 middle = (from + to) / 2;
-      const auto on_edge = [&](double u, Point3& x) {
-        // The point of the edge in the plane across the chord at u.
-        for (int step = 0; step < 30; ++step) {
-          Point3 f;
-          Point3 c;
-          const double vf = surface.function(edge.a, x, f);
-          const double vc = surface.condition(edge.condition, x, c);
-          Eigen::Matrix3d j;
-          j.row(0) = f.transpose() / f.norm();
-          j.row(1) = c.transpose() / c.norm();
-          j.row(2) = e.transpose();
-          const Point3 r(vf / f.norm(), vc / c.norm(), (x - from).dot(e) - u * chord_length);
-          const Point3 d = j.partialPivLu().solve(r);
-          if (!d.allFinite()) return false;
-          x -= d;
-          if (d.norm() <= 1e-15 * surface.scale) return true;
-        }
-        return true;
-      };
-      if (!on_edge(0.5, middle)) return false;
-      // The integrand's poles lie where the edge would be across the chord: eight points then reach 1e-15.
-      constexpr double kStraight = 0.98;  // cos of 11 degrees
-      const double mid = std::abs(surface.tangent(arc.edge, middle).dot(e));
-      if (std::min({begin, end, mid}) < kStraight || (middle - (from + to) / 2).norm() > 0.1 * chord_length) {
-        if (--budget < 0) return false;
-        open.emplace_back(middle, to);
-        open.emplace_back(from, middle);
-        continue;
-      }
-      double sum = 0;
-      for (int g = 0; g < 8; ++g) {
-        const int node = g < 4 ? 3 - g : g - 4;  // from one end to the other
-        const double u = 0.5 + (g < 4 ? -0.5 : 0.5) * kNode[node];
-        Point3 x = from + u * (to - from) + 4 * u * (1 - u) * (middle - (from + to) / 2);
-        if (!on_edge(u, x)) return false;
-        line.push_back(x);
-        sum += 0.5 * kWeight[node] / std::abs(surface.tangent(arc.edge, x).dot(e));
-      }
-      length += sum * chord_length;
-      line.push_back(to);
+      if ((last - first).norm() <= kRounding * s_.scale) continue;
+      Point3 middle;
+      const Piece piece = add_piece(first, last, middle);
+      if (piece == Piece::added) continue;
+      if (piece == Piece::lost || --budget_ < 0) return false;
+      open.emplace_back(middle, last);
+      open.emplace_back(first, middle);
     }
+    return true;
   }
-  arc.length = length;
-  arc.error = 1e-14 * length;
-  arc.points.resize(3, static_cast<Index>(line.size()));
-  for (std::size_t i = 0; i < line.size(); ++i) arc.points.col(static_cast<Index>(i)) = line[i];
-  if (line.size() < 2) arc.points = chord(a, b);
-  arc.first = surface.tangent(arc.edge, a);
-  arc.last = surface.tangent(arc.edge, b);
-  const Index m = arc.points.cols();
-  if (arc.first.dot(Point3(arc.points.col(1) - arc.points.col(0))) < 0) arc.first = -arc.first;
-  if (arc.last.dot(Point3(arc.points.col(m - 1) - arc.points.col(m - 2))) < 0) arc.last = -arc.last;
+
+  [[nodiscard]] double length() const { return length_; }
+  /// On the edge, without the first.
+  [[nodiscard]] const std::vector<Point3>& line() const { return line_; }
+
+ private:
+  enum class Piece { added, halve, lost };
+
+  [[nodiscard]] double along(const Point3& x, const Point3& e) { return std::abs(s_.tangent(edge_, x).dot(e)); }
+
+  /// The point of the edge near x in the plane across e through `at`.
+  [[nodiscard]] bool cut(const Point3& at, const Point3& e, Point3& x) {
+    const SharpEdge edge = s_.edge(edge_);
+    for (int step = 0; step < kMostSteps; ++step) {
+      Point3 f;
+      Point3 c;
+      const double value_f = s_.function(edge.a, x, f);
+      const double value_c = s_.condition(edge.condition, x, c);
+      Eigen::Matrix3d rows;
+      rows.row(0) = f.transpose() / f.norm();
+      rows.row(1) = c.transpose() / c.norm();
+      rows.row(2) = e.transpose();
+      const Point3 off(value_f / f.norm(), value_c / c.norm(), (x - at).dot(e));
+      const Point3 change = rows.partialPivLu().solve(off);
+      if (!change.allFinite()) return false;
+      x -= change;
+      if (change.norm() <= 1e-15 * s_.scale) return true;
+    }
+    return true;
+  }
+
+  Piece add_piece(const Point3& from, const Point3& to, Point3& middle) {
+    const double chord = (to - from).norm();
+    const Point3 e = (to - from) / chord;
+    const Point3 centre = (from + to) / 2;
+    middle = centre;
+    if (!cut(centre, e, middle)) return Piece::lost;
+    const Point3 bulge = middle - centre;
+    if (bulge.norm() > kStray * chord) return Piece::halve;
+    if (std::min({along(from, e), along(to, e), along(middle, e)}) < kStraight) return Piece::halve;
+    std::array<Point3, kPoints> x;
+    double mean = 0;
+    double sixth = 0;
+    double seventh = 0;
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const Point3 at = centre + kNode[i] / 2 * (to - from);
+      x[i] = at + (1 - kNode[i] * kNode[i]) * bulge;
+      if (!cut(at, e, x[i])) return Piece::lost;
+      const double speed = kWeight[i] / along(x[i], e);
+      mean += speed / 2;
+      sixth += speed * 6.5 * legendre(6, kNode[i]);
+      seventh += speed * 7.5 * legendre(7, kNode[i]);
+    }
+    if (!(std::max(std::abs(sixth), std::abs(seventh)) <= kResolved * mean)) return Piece::halve;
+    length_ += mean * chord;
+    line_.insert(line_.end(), x.begin(), x.end());
+    line_.push_back(to);
+    return Piece::added;
+  }
+
+  FacetedSurface& s_;
+  int edge_;
+  double length_ = 0;
+  std::vector<Point3> line_;
+  int budget_ = kBudget;
+};
+
+}  // namespace
+
+bool trace_edge_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, const Point3& b) {
+  EdgeTracer tracer(surface, arc.edge);
+  const std::vector<Point3> marks = tracer.marks(arc.start, a, b);
+  for (std::size_t i = 0; i + 1 < marks.size(); ++i) {
+    if (!tracer.add(marks[i], marks[i + 1])) return false;
+  }
+  arc.length = tracer.length();
+  arc.error = kRounding * arc.length;
+  std::vector<Point3> line = tracer.line();
+  line.insert(line.begin(), a);
+  if (line.size() < 2) line.push_back(b);
+  const std::size_t m = line.size();
+  arc.points.resize(3, static_cast<Index>(m));
+  for (std::size_t i = 0; i < m; ++i) arc.points.col(static_cast<Index>(i)) = line[i];
+  arc.first = tracer.towards(a, line[1] - a);
+  arc.last = tracer.towards(b, b - line[m - 2]);
   return true;
 }
 

@@ -134,7 +134,8 @@ class WaySearch {
         reach_ = std::max(reach_, reach * graph.size());
       }
     }
-    direct_ = step_between(surface, ends_[0], ends_[1]);
+    // Farther apart, the middle of a step says nothing of what lies on the way.
+    if ((p - q).norm() <= FacetGraph::kReach * graph.size()) direct_ = step_between(surface, ends_[0], ends_[1]);
   }
 
   [[nodiscard]] std::vector<FacetWay> find(double slack);
