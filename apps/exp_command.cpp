@@ -59,6 +59,7 @@ Json ray_json(const Surface& surface, const RayResult& result, double asked, dou
   json["conjugate_at"] = result.conjugate_at ? Json(*result.conjugate_at) : Json(nullptr);
   json["conjugate_searched"] = result.conjugate_searched;
   json["index"] = result.conjugate_searched != 0 ? Json(result.index) : Json(nullptr);
+  if (!result.pieces.empty()) json["pieces"] = pieces_json(result.pieces);
   json["steps"] = result.num_steps;
   json["seconds"] = seconds;
   json["points"] = Json::array();
@@ -78,6 +79,10 @@ std::vector<SceneFact> ray_facts(const RayResult& result) {
     facts.push_back({"conjugate", fmt::format("first at {:.15g}, index {}", *result.conjugate_at, result.index)});
   } else {
     facts.push_back({"conjugate", result.conjugate_searched != 0 || result.length == 0 ? "none" : "not looked for"});
+  }
+  if (result.pieces.size() > 1) {
+    facts.push_back(
+        {"edges", fmt::format("{} crossed, over {} faces", result.pieces.size() / 2, result.pieces.size() / 2 + 1)});
   }
   facts.push_back({"spread", fmt::format("an error at the start grows by up to {:.3g}", result.amplification)});
   return facts;

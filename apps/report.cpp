@@ -54,6 +54,12 @@ std::string length_text(const PathResult& result) {
 
 }  // namespace
 
+nlohmann::ordered_json pieces_json(const std::vector<PathPiece>& pieces) {
+  Json list = Json::array();
+  for (const PathPiece& piece : pieces) list.push_back(piece_json(piece));
+  return list;
+}
+
 nlohmann::ordered_json points_json(const PointsIn& points) {
   Json list = Json::array();
   for (Index j = 0; j < points.cols(); ++j) list.push_back(vector_json(points.col(j)));
@@ -126,10 +132,7 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
     if (options.all) entry["points"] = points_json(candidate.points);
     json["candidates"].push_back(std::move(entry));
   }
-  if (!result.pieces.empty()) {
-    json["pieces"] = Json::array();
-    for (const PathPiece& piece : result.pieces) json["pieces"].push_back(piece_json(piece));
-  }
+  if (!result.pieces.empty()) json["pieces"] = pieces_json(result.pieces);
   json["unique"] = nullptr;
   if (has_path(result) && (result.rivals_sought || !result.unique)) json["unique"] = result.unique;
   json["method"] = to_string(options.method);

@@ -15,6 +15,9 @@ namespace taut::app {
                                                const PathOptions& options, double surface_seconds,
                                                double total_seconds);
 
+/// What a path on a surface with edges or a border is made of.
+[[nodiscard]] nlohmann::ordered_json pieces_json(const std::vector<PathPiece>& pieces);
+
 /// [[x, y, ...], ...], a point a list.
 [[nodiscard]] nlohmann::ordered_json points_json(const PointsIn& points);
 

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
 #include "core/parallel.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/facet_ray.hpp"
+#include "strata/faceted_surface.hpp"
 #include "surface/normal_space.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
@@ -64,7 +67,15 @@ struct RaySolver::Impl {
   detail::CellLevels levels;
   ExponentialMap map;
 
+  std::unique_ptr<detail::FacetedSurface> faces;  // of a surface with edges; made where it is first needed
+  bool sought_faces = false;
+
   Vector start(const VectorIn& from);
+  /// Null where the surface has no edges.
+  [[nodiscard]] const detail::FacetedSurface* facets(const PointsIn& near);
+  /// `over`: the caller's own clone of the faces, or null.
+  void trace(RayResult& result, const VectorIn& direction, double length, detail::FacetedSurface* over,
+             ExponentialMap& along, const Context& told) const;
   void tell_tilt(const Vector& from, const VectorIn& direction) const;
 };
 
@@ -86,6 +97,54 @@ Vector RaySolver::Impl::start(const VectorIn& from) {
   return levels.on_surface(from, "start");
 }
 
+const detail::FacetedSurface* RaySolver::Impl::facets(const PointsIn& near) {
+  if (!std::exchange(sought_faces, true)) {
+    faces = detail::FacetedSurface::of(surface);
+    if (faces && !faces->has_edges()) faces.reset();
+    if (faces) {
+      levels.prepare(near);
+      faces->scale = levels.extent().box.diagonal();
+    }
+  }
+  return faces.get();
+}
+
+void RaySolver::Impl::trace(RayResult& result, const VectorIn& direction, double length, detail::FacetedSurface* over,
+                            ExponentialMap& along, const Context& told) const {
+  if (over == nullptr || length == 0) {
+    static_cast<ExponentialResult&>(result) = along.trace(result.from, direction, length, told);
+    result.message = explain(result, length);
+    return;
+  }
+  const detail::Point3 way = length < 0 ? detail::Point3(-direction) : detail::Point3(direction);
+  const detail::FacetRay found = detail::trace_over_faces(*over, result.from, way, std::abs(length), options, told);
+  static_cast<ExponentialResult&>(result) = found.ray;
+  if (length < 0) {
+    result.length = -result.length;
+    result.direction = -result.direction;
+    result.conjugate_searched = -result.conjugate_searched;
+    if (result.conjugate_at) result.conjugate_at = -*result.conjugate_at;
+  }
+  for (std::size_t i = 0; i < found.arcs.size(); ++i) {
+    const detail::FacetRay::Arc& arc = found.arcs[i];
+    if (i > 0) {
+      PathPiece crossing;
+      crossing.kind = PathPiece::Kind::crossing;
+      crossing.point = arc.x;
+      crossing.left = crossing.right = found.arcs[i - 1].angle;
+      result.pieces.push_back(std::move(crossing));
+    }
+    PathPiece piece;
+    piece.kind = PathPiece::Kind::face;
+    piece.face = over->face(arc.face).text;
+    piece.length = arc.length;
+    piece.point = arc.x;
+    result.pieces.push_back(std::move(piece));
+  }
+  if (!options.points) result.points.resize(3, 0);
+  result.message = explain(result, length);
+}
+
 void RaySolver::Impl::tell_tilt(const Vector& from, const VectorIn& direction) const {
   const Index d = surface.dim();
   const Index k = surface.codim();
@@ -105,9 +164,10 @@ RayResult RaySolver::solve(const VectorIn& from, const VectorIn& direction, doub
   check_direction(impl.surface, direction, length);
   RayResult result;
   result.from = impl.start(from);
-  impl.tell_tilt(result.from, direction);
-  static_cast<ExponentialResult&>(result) = impl.map.trace(result.from, direction, length, impl.context);
-  result.message = explain(result, length);
+  if (impl.facets(result.from) == nullptr) impl.tell_tilt(result.from, direction);
+  const detail::FacetedSurface* faces = impl.facets(result.from);
+  const std::unique_ptr<detail::FacetedSurface> own = faces != nullptr ? faces->clone() : nullptr;
+  impl.trace(result, direction, length, own.get(), impl.map, impl.context);
   return result;
 }
 
@@ -127,17 +187,21 @@ std::vector<RayResult> RaySolver::solve_many(const PointsIn& from, const PointsI
       result.from = impl.start(from.col(j));
     });
   }
+  Points starts(impl.surface.dim(), from.cols());
+  Index num_starts = 0;
+  for (const RayResult& result : results) {
+    if (result.message.empty()) starts.col(num_starts++) = result.from;
+  }
+  const detail::FacetedSurface* faces = num_starts > 0 ? impl.facets(starts.leftCols(num_starts)) : nullptr;
   detail::parallel_for(impl.context, 0, from.cols(), kGrain, [&](Index first, Index last) {
     ExponentialMap map(impl.surface, impl.options);
+    const std::unique_ptr<detail::FacetedSurface> own = faces != nullptr ? faces->clone() : nullptr;
     Context quiet;
     quiet.cancel = impl.context.cancel;
     for (Index j = first; j < last; ++j) {
       RayResult& result = results[static_cast<std::size_t>(j)];
       if (!result.message.empty()) continue;
-      guard(result, [&] {
-        static_cast<ExponentialResult&>(result) = map.trace(result.from, directions.col(j), lengths(j), quiet);
-        result.message = explain(result, lengths(j));
-      });
+      guard(result, [&] { impl.trace(result, directions.col(j), lengths(j), own.get(), map, quiet); });
     }
   });
   return results;

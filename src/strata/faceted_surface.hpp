@@ -86,6 +86,8 @@ class FacetedSurface {
   [[nodiscard]] int num_conditions() const { return num_kinks_ + num_domain_; }
   /// Kinks, of the formula and in the domain; the components of the domain come after them.
   [[nodiscard]] int num_kinks() const { return num_kinks_; }
+  /// Has the formula itself kinks, so that faces may meet in edges.
+  [[nodiscard]] bool has_edges() const { return first_in_domain_ > 0; }
   /// The conditions that may change their sign within the box, by bounds; all where there are none.
   void undecided(const Box& box, std::vector<int>& found);
 
