@@ -1,6 +1,6 @@
-// Ways over a graph from p to q. Dijkstra's algorithm runs from both ends, no farther than half of the longest way that
-// is wanted; then a(i) + b(i) is the length of the shortest way through node i for all nodes i half-way. Every hollow
-// of it there is a way round; so is every other row of faces.
+// Ways over a graph from p to q. Dijkstra's algorithm runs from both ends, no farther than ways may lead; then
+// a(i) + b(i) is the length of the shortest way through node i. Every hollow of it half-way is a way round; so is every
+// other row of faces through some node.
 #include "strata/facet_ways.hpp"
 
 #include <algorithm>
@@ -46,15 +46,17 @@ class Tree {
   /// The node before, or kNoNodeBefore after the end itself.
   [[nodiscard]] std::uint32_t before(std::uint32_t node) const { return before_[node]; }
 
-  /// Takes out one bucket; `met` is called with every node in it.
+  /// Takes out one bucket; `met` is called with every node in it. Ways to `other`, the other end, that are longer than
+  /// `longest` are left: a straight line is a lower bound of what they lack.
   template <class Met>
-  void advance(const Met& met) {
+  void advance(const Point3& other, double longest, const Met& met) {
     std::vector<Entry>& bucket = buckets_[current_ % kBuckets];
     // It grows while it is worked off.
     for (std::size_t i = 0; i < bucket.size(); ++i) {
       const Entry entry = bucket[i];
       if (entry.length > length_[entry.node]) continue;
       met(entry.node);
+      if (entry.length + (graph_.nodes()[entry.node].x - other).norm() > longest) continue;
       for (const FacetLink& link : graph_.links(entry.node)) {
         reach(link.to, entry.length + static_cast<double>(link.length), entry.node);
       }
@@ -153,6 +155,7 @@ class WaySearch {
   [[nodiscard]] std::vector<std::uint32_t> hollows(const std::vector<std::uint32_t>& middle) const;
   [[nodiscard]] int label(std::size_t end, std::uint32_t node);
   [[nodiscard]] Row row_through(std::uint32_t node);
+  static void add(FacetWay way, std::set<Row>& rows, std::vector<FacetWay>& found);
 
   /// The row of faces from an end to a node.
   struct Label {
@@ -173,17 +176,19 @@ class WaySearch {
   std::array<std::vector<int>, 2> label_of_node_;
 };
 
-/// Half-way, a way's lengths to its ends differ by no more than a step.
+/// Half-way, a way's lengths to its ends differ by no more than a step. Rows of faces are told apart along the whole
+/// way.
 void WaySearch::grow(double slack) {
   best_ = static_cast<double>(direct_.length);
   for (const std::size_t end : {0U, 1U}) trees_[end].emplace(graph_, links_[end]);
   const double step = FacetGraph::kLongStep * reach_;
   while (true) {
     const double radius = std::min(trees_[0]->radius(), trees_[1]->radius());
-    if (radius > (slack * best_ + step) / 2) return;
+    if (radius > std::max((slack * best_ + step) / 2, (1 + (slack - 1) / 2) * best_)) return;
     if (trees_[0]->ended() && trees_[1]->ended()) return;
     const std::size_t end = trees_[0]->radius() <= trees_[1]->radius() ? 0 : 1;
-    trees_[end]->advance([&](std::uint32_t node) { best_ = std::min(best_, total(node)); });
+    trees_[end]->advance(ends_[1 - end].x, slack * best_,
+                         [&](std::uint32_t node) { best_ = std::min(best_, total(node)); });
   }
 }
 
@@ -309,6 +314,7 @@ int WaySearch::label(std::size_t end, std::uint32_t node) {
   return labels[node];
 }
 
+/// The sets of faces of the row's parts, with -1 between them.
 WaySearch::Row WaySearch::row_through(std::uint32_t node) {
   const auto half = [&](std::size_t end) {
     std::vector<const Row*> parts;
@@ -320,12 +326,47 @@ WaySearch::Row WaySearch::row_through(std::uint32_t node) {
   std::vector<const Row*> first = half(0);
   const std::vector<const Row*> second = half(1);
   Row row;
-  for (std::size_t i = first.size(); i-- > 1;) row.push_back(first[i]->front());
+  const auto append = [&](const Row& part) {
+    row.insert(row.end(), part.begin(), part.end());
+    row.push_back(-1);
+  };
+  for (std::size_t i = first.size(); i-- > 1;) append(*first[i]);
   const Row both = common(*first.front(), *second.front());
-  row.push_back(both.empty() ? first.front()->front() : both.front());
-  if (both.empty()) row.push_back(second.front()->front());
-  for (std::size_t i = 1; i < second.size(); ++i) row.push_back(second[i]->front());
+  append(both.empty() ? *first.front() : both);
+  if (both.empty()) append(*second.front());
+  for (std::size_t i = 1; i < second.size(); ++i) append(*second[i]);
   return row;
+}
+
+/// Adds the way, unless its row of faces is there already. A part of it may lie on an edge, and so on several faces:
+/// then each of them makes a row.
+void WaySearch::add(FacetWay way, std::set<Row>& rows, std::vector<FacetWay>& found) {
+  struct Part {
+    std::size_t first;
+    Row faces;
+  };
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < way.faces.size(); ++i) {
+    Row both = parts.empty() ? Row{} : common(parts.back().faces, way.faces[i]);
+    if (both.empty()) {
+      parts.push_back({i, way.faces[i]});
+    } else {
+      parts.back().faces = std::move(both);
+    }
+  }
+  Row row;
+  for (const Part& part : parts) row.push_back(part.faces.empty() ? -1 : part.faces.front());
+  if (rows.insert(row).second) found.push_back(way);
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    const std::size_t end = k + 1 < parts.size() ? parts[k + 1].first : way.faces.size();
+    for (std::size_t f = 1; f < parts[k].faces.size() && found.size() < kMostWays; ++f) {
+      Row other = row;
+      other[k] = parts[k].faces[f];
+      if (!rows.insert(other).second) continue;
+      found.push_back(way);
+      for (std::size_t i = parts[k].first; i < end; ++i) found.back().faces[i] = {parts[k].faces[f]};
+    }
+  }
 }
 
 std::vector<FacetWay> WaySearch::find(double slack) {
@@ -334,21 +375,29 @@ std::vector<FacetWay> WaySearch::find(double slack) {
   if (!(best_ < kFar)) return found;
   const auto n = static_cast<std::uint32_t>(graph_.nodes().size());
   const double half = FacetGraph::kLongStep * reach_;
+  const double longest_row = (1 + (slack - 1) / 2) * best_;
   std::vector<std::uint32_t> middle;
+  std::vector<std::uint32_t> others;
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (total(i) <= slack * best_ && std::abs(tree(0).length(i) - tree(1).length(i)) <= half) middle.push_back(i);
+    if (total(i) > slack * best_) continue;
+    if (std::abs(tree(0).length(i) - tree(1).length(i)) <= half) middle.push_back(i);
+    if (total(i) <= longest_row) others.push_back(i);
   }
-  std::stable_sort(middle.begin(), middle.end(), [&](auto i, auto j) { return total(i) < total(j); });
+  const auto is_shorter = [&](std::uint32_t i, std::uint32_t j) { return total(i) < total(j); };
+  std::stable_sort(middle.begin(), middle.end(), is_shorter);
   if (static_cast<double>(direct_.length) <= slack * best_) found.push_back(direct_way());
   std::set<Row> rows;
   for (const std::uint32_t hollow : hollows(middle)) {
-    found.push_back(way_through(hollow));
-    rows.insert(row_through(hollow));
+    add(way_through(hollow), rows, found);
   }
-  for (const std::uint32_t node : middle) {
+  // Not only half-way: another row may pass a corner near an end on its other side.
+  std::stable_sort(others.begin(), others.end(), is_shorter);
+  std::set<std::pair<int, int>> labels;
+  std::set<Row> seen;
+  for (const std::uint32_t node : others) {
     if (found.size() >= kMostWays) break;
-    if (total(node) > (1 + (slack - 1) / 2) * best_) break;
-    if (rows.insert(row_through(node)).second) found.push_back(way_through(node));
+    if (!labels.insert({label(0, node), label(1, node)}).second) continue;
+    if (seen.insert(row_through(node)).second) add(way_through(node), rows, found);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const FacetWay& x, const FacetWay& y) { return x.length < y.length; });
