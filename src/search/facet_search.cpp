@@ -34,6 +34,8 @@ constexpr double kAllSlack = 3;
 /// A path is at least so many cells long, or the graph is made again around it.
 constexpr double kCellsAlong = 8;
 constexpr int kMostGraphs = 8;
+/// Chains beside one way that pass corners on other sides.
+constexpr std::size_t kMostOthers = 6;
 /// A graph of a whole surface reaches so far beyond it, of its size.
 constexpr double kMargin = 1e-3;
 /// Where the surface goes on, a graph reaches so far beyond the points, of the diagonal of their box; one that is there
@@ -119,17 +121,21 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   std::string why;
   for (const FacetWay& way : ways) {
     if (way.length > slack * best) break;
-    FacetChain chain = chain_of(*surface_, way);
-    shorten_chain(*surface_, chain, context_);
-    if (!chain.solved) {
-      if (way.length < unsolved) {
+    // The way's chain, and those that pass a corner on its other side.
+    std::vector<FacetChain> chains{chain_of(*surface_, way)};
+    for (std::size_t i = 0; i < chains.size() && i <= kMostOthers; ++i) {
+      std::vector<FacetChain> others;
+      FacetChain chain = std::move(chains[i]);
+      shorten_chain(*surface_, chain, others, context_);
+      for (FacetChain& other : others) chains.push_back(std::move(other));
+      if (i == 0 && !chain.solved && way.length < unsolved) {
         unsolved = way.length;
         why = chain.why;
       }
-      continue;
+      if (!chain.solved) continue;
+      best = std::min(best, chain.length);
+      found.push_back({std::move(chain), way});
     }
-    best = std::min(best, chain.length);
-    found.push_back({std::move(chain), way});
   }
   result.seconds.correct += watch.restart();
   std::stable_sort(found.begin(), found.end(),

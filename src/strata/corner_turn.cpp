@@ -22,13 +22,13 @@ constexpr double kFar = std::numeric_limits<double>::infinity();
 }  // namespace
 
 /// Stop i is in a corner: leaves it on the side where there is room. True when it did.
-bool leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i) {
+CornerTurn leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i, bool wider_side) {
   ChainStop& stop = chain.stops[i];
   const ChainArc before = chain.arcs[i - 1];
   const ChainArc after = chain.arcs[i];
   const std::optional<Star> found = surface.star(stop.x, 1e-8 * surface.scale);
   stop.left = stop.right = kFar;
-  if (!found) return false;
+  if (!found) return {};
   const Star& star = *found;
   const std::size_t n = star.wedges.size();
   // Where a direction lies: the wedge and the angle in it. Directions along rays are in both wedges.
@@ -75,7 +75,7 @@ bool leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i) {
   };
   const Place back = locate(-before.last, before.face);
   const Place ahead = locate(after.first, after.face);
-  if (back.off > 0.1 || ahead.off > 0.1) return false;
+  if (back.off > 0.1 || ahead.off > 0.1) return {};
   struct Ray {
     double angle;  // from the start of the sweep
     int edge;
@@ -103,11 +103,13 @@ bool leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i) {
   std::vector<Ray> right;
   stop.left = sweep(ahead, back, left);
   stop.right = sweep(back, ahead, right);
-  const double least = std::min(stop.left, stop.right);
-  if (!(least < kPi - ChainTolerances::angle)) return false;
-  std::vector<Ray> rays = stop.right <= stop.left ? right : left;
-  const double whole = least;
-  if (stop.left < stop.right) {
+  const auto has_room = [](double angle) { return angle < kPi - ChainTolerances::angle; };
+  const bool both = has_room(stop.left) && has_room(stop.right);
+  if (!has_room(std::min(stop.left, stop.right)) || (wider_side && !both)) return {};
+  const bool on_right = (stop.right <= stop.left) != wider_side;
+  std::vector<Ray> rays = on_right ? right : left;
+  const double whole = on_right ? stop.right : stop.left;
+  if (!on_right) {
     // Seen from the way back.
     std::reverse(rays.begin(), rays.end());
     for (std::size_t k = 0; k < rays.size(); ++k) {
@@ -154,7 +156,7 @@ bool leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i) {
                surface.violation(edge.a, crossing.x) <= ChainTolerances::on_edge * surface.scale &&
                (edge.b < 0 || surface.violation(edge.b, crossing.x) <= ChainTolerances::on_edge * surface.scale);
     }
-    if (!placed) return false;
+    if (!placed) return {};
     ChainArc arc;
     arc.face = face;
     arc.start = chord(last, crossing.x);
@@ -175,15 +177,15 @@ bool leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t i) {
     blend(arcs.front(), before);
     blend(arcs.back(), after);
   } else if (before.points.cols() > 1 && after.points.cols() > 1) {
-    Points both(3, before.points.cols() + after.points.cols() - 1);
-    both << before.points, after.points.rightCols(after.points.cols() - 1);
-    arcs.front().start = without_repeats(both);
+    Points joined(3, before.points.cols() + after.points.cols() - 1);
+    joined << before.points, after.points.rightCols(after.points.cols() - 1);
+    arcs.front().start = without_repeats(joined);
   }
   const auto at = static_cast<std::ptrdiff_t>(i);
   chain.stops.erase(chain.stops.begin() + at);
   chain.arcs.erase(chain.arcs.begin() + at);
   chain.replace_arc(i - 1, std::move(stops), std::move(arcs));
-  return true;
+  return {.left = true, .both = both};
 }
 
 }  // namespace taut::detail

@@ -155,7 +155,7 @@ class WaySearch {
   [[nodiscard]] std::vector<std::uint32_t> hollows(const std::vector<std::uint32_t>& middle) const;
   [[nodiscard]] int label(std::size_t end, std::uint32_t node);
   [[nodiscard]] Row row_through(std::uint32_t node);
-  static void add(FacetWay way, std::set<Row>& rows, std::vector<FacetWay>& found);
+  static void add(const FacetWay& way, bool is_hollow, std::set<Row>& rows, std::vector<FacetWay>& found);
 
   /// The row of faces from an end to a node.
   struct Label {
@@ -338,9 +338,9 @@ WaySearch::Row WaySearch::row_through(std::uint32_t node) {
   return row;
 }
 
-/// Adds the way, unless its row of faces is there already. A part of it may lie on an edge, and so on several faces:
-/// then each of them makes a row.
-void WaySearch::add(FacetWay way, std::set<Row>& rows, std::vector<FacetWay>& found) {
+/// Adds the way, unless its row of faces is there already; that of a hollow in any case: it is another way round. A
+/// part of it may lie on an edge, and so on several faces: then each of them makes a row.
+void WaySearch::add(const FacetWay& way, bool is_hollow, std::set<Row>& rows, std::vector<FacetWay>& found) {
   struct Part {
     std::size_t first;
     Row faces;
@@ -356,7 +356,7 @@ void WaySearch::add(FacetWay way, std::set<Row>& rows, std::vector<FacetWay>& fo
   }
   Row row;
   for (const Part& part : parts) row.push_back(part.faces.empty() ? -1 : part.faces.front());
-  if (rows.insert(row).second) found.push_back(way);
+  if (rows.insert(row).second || is_hollow) found.push_back(way);
   for (std::size_t k = 0; k < parts.size(); ++k) {
     const std::size_t end = k + 1 < parts.size() ? parts[k + 1].first : way.faces.size();
     for (std::size_t f = 1; f < parts[k].faces.size() && found.size() < kMostWays; ++f) {
@@ -388,7 +388,7 @@ std::vector<FacetWay> WaySearch::find(double slack) {
   if (static_cast<double>(direct_.length) <= slack * best_) found.push_back(direct_way());
   std::set<Row> rows;
   for (const std::uint32_t hollow : hollows(middle)) {
-    add(way_through(hollow), rows, found);
+    add(way_through(hollow), true, rows, found);
   }
   // Not only half-way: another row may pass a corner near an end on its other side.
   std::stable_sort(others.begin(), others.end(), is_shorter);
@@ -397,7 +397,7 @@ std::vector<FacetWay> WaySearch::find(double slack) {
   for (const std::uint32_t node : others) {
     if (found.size() >= kMostWays) break;
     if (!labels.insert({label(0, node), label(1, node)}).second) continue;
-    if (seen.insert(row_through(node)).second) add(way_through(node), rows, found);
+    if (seen.insert(row_through(node)).second) add(way_through(node), false, rows, found);
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const FacetWay& x, const FacetWay& y) { return x.length < y.length; });

@@ -87,11 +87,17 @@ ChainMove drop_turned_arc(FacetChain& chain) {
 }
 
 /// Looks for what a settled chain breaks, and mends one thing.
-ChainMove mend(FacetedSurface& surface, FacetChain& chain, const SlidStops& slid, int& num_shifted) {
+ChainMove mend(FacetedSurface& surface, FacetChain& chain, const SlidStops& slid, int& num_shifted,
+               std::vector<FacetChain>& others) {
   if (drop_empty_arcs(chain, ChainTolerances::together * surface.scale)) return {.changed = true};
   if (!slid.at_end.empty()) return end_in_corner(surface, chain, slid.at_end.front());
   for (std::size_t i = 1; i + 1 < chain.stops.size(); ++i) {
-    if (chain.stops[i].kind == Kind::corner && leave_corner(surface, chain, i)) return {.changed = true};
+    if (chain.stops[i].kind != Kind::corner) continue;
+    FacetChain other = chain;
+    const CornerTurn turn = leave_corner(surface, chain, i);
+    if (!turn.left) continue;
+    if (turn.both && leave_corner(surface, other, i, true).left) others.push_back(std::move(other));
+    return {.changed = true};
   }
   ChainMove move = drop_turned_arc(chain);
   for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.empty(); ++i) {
@@ -129,7 +135,8 @@ std::string broken(FacetedSurface& surface, const FacetChain& chain) {
 
 }  // namespace
 
-void shorten_chain(FacetedSurface& surface, FacetChain& chain, const Context& context) {
+void shorten_chain(FacetedSurface& surface, FacetChain& chain, std::vector<FacetChain>& others,
+                   const Context& context) {
   ArcTracer tracer(surface, context);
   const double together = ChainTolerances::together * surface.scale;
   int num_shifted = 0;
@@ -153,7 +160,7 @@ void shorten_chain(FacetedSurface& surface, FacetChain& chain, const Context& co
       continue;
     }
     least_curvature = slid.least_curvature;
-    ChainMove move = mend(surface, chain, slid, num_shifted);
+    ChainMove move = mend(surface, chain, slid, num_shifted, others);
     if (!move.stuck.empty()) {
       chain.why = std::move(move.stuck);
       return;
