@@ -74,6 +74,7 @@ class StopNewton {
   [[nodiscard]] Vector solve(const std::vector<Index>& free);
   [[nodiscard]] double longest_part(const Vector& step) const;
   [[nodiscard]] bool move(const Vector& step);
+  [[nodiscard]] bool fall_into_corners();
 
   FacetedSurface& s_;
   ArcTracer& tracer_;
@@ -190,6 +191,24 @@ bool StopNewton::move(const Vector& step) {
   return contacts_ || c_.length < length + kLastGain * length;
 }
 
+/// A stop that has come to the end of its edge, where the chain has a corner already, goes into it. Else it would turn
+/// to and fro there, its arc to the corner too short to have a direction.
+bool StopNewton::fall_into_corners() {
+  bool fell = false;
+  for (const Mover& mover : movers_) {
+    if (mover.out == 0) continue;
+    ChainStop& stop = c_.stops[mover.stop];
+    for (const std::size_t other : {mover.stop - 1, mover.stop + 1}) {
+      if (c_.stops[other].kind != Kind::corner) continue;
+      if ((c_.stops[other].x - stop.x).norm() > ChainTolerances::at_corner * s_.scale) continue;
+      stop.x = c_.stops[other].x;
+      c_.arcs[mover.stop - 1].done = c_.arcs[mover.stop].done = false;
+      fell = true;
+    }
+  }
+  return fell && tracer_.trace(c_);
+}
+
 SlidStops StopNewton::run(const Context& context) {
   const auto fail = [&](const char* why) {
     result_.why = why;
@@ -254,7 +273,8 @@ SlidStops StopNewton::run(const Context& context) {
       return settle(predicted);
     }
     // An arc that has shrunk to nothing has no direction: it goes, before anything else is asked.
-    if (std::any_of(c_.arcs.begin(), c_.arcs.end(), [&](const ChainArc& arc) { return arc.length <= together_; })) {
+    if (fall_into_corners() ||
+        std::any_of(c_.arcs.begin(), c_.arcs.end(), [&](const ChainArc& arc) { return arc.length <= together_; })) {
       result_.settled = true;
       return result_;
     }
