@@ -223,6 +223,42 @@ TEST(Edges, SymmetryAndTriangle) {
   EXPECT_LE(ab, ac + bc + 1e-12);
 }
 
+// Against exact unfolding by a program of its own (2026-11-30). The first was missed since rows of faces were told
+// apart half-way only, the second since a stop turned to and fro next to a corner.
+TEST(Edges, ConvexPolyhedra) {
+  const std::string eleven =
+      "max(-0.640887*x+0.306784*y+0.330722*z,0.00635944*x-0.356162*y-0.825888*z,-0.357378*x-0.594345*y+0.0598131*z,"
+      "0.755228*x-0.453534*y+0.943045*z,-0.717053*x-0.32281*y+0.340128*z,0.40446*x+0.892437*y+0.573849*z,"
+      "-0.707996*x-0.122936*y+0.437403*z,0.486308*x+0.737886*y+0.329391*z,0.293655*x-0.0847668*y-0.896129*z,"
+      "0.358436*x-0.0691003*y+0.777754*z,0.601499*x+0.165124*y+0.69562*z)=1";
+  expect_length(path(eleven, {-0.3399444994259985, -1.0766286869737844, -0.7491422931892372},
+                     {-0.38600369585266525, 0.356305603265655, 1.460563233817568}),
+                3.441414707783354, 1e-12);
+  const std::string eight =
+      "max(-0.400967*x+0.931491*y-0.072435*z,-0.696457*x+0.319912*y-0.233413*z,"
+      "0.591563*x+0.168309*y+0.0968963*z,-0.0577057*x+1.09277*y-0.134365*z,"
+      "0.127812*x-0.471182*y-0.727301*z,0.450284*x-0.648274*y+0.845697*z,0.141887*x-0.0813132*y-0.677999*z,"
+      "-0.292858*x+0.921696*y-0.31556*z)=1";
+  expect_length(path(eight, {1.3435928182043917, 0.10870918539890416, -1.2067881184745282},
+                     {-1.4575718259774115, 0.1586829229281384, 0.2823350560788684}),
+                3.8595636564495925, 1e-12);
+}
+
+// Over a lid with a hole that grows in the path's way.
+TEST(Edges, ASmallerDomainNeverShortens) {
+  FormulaOptions options;
+  options.dim = 3;
+  double before = 0;
+  for (const char* radius : {"0.1", "0.4", "0.9"}) {
+    options.domain = {std::string("(x-0.2)^2+y^2>=") + radius};
+    const PathResult found = shortest_path(parse_surface(kCan, options), Eigen::Vector3d(-1.5, 0.1, 1),
+                                           Eigen::Vector3d(2 * std::cos(0.1), 2 * std::sin(0.1), 0.4));
+    EXPECT_EQ(found.status, Status::ok) << found.message;
+    EXPECT_GT(found.length, before + 1e-6);
+    before = found.length;
+  }
+}
+
 TEST(Edges, ManyPairsAreThoseAloneOnAnyThreads) {
   Points from(3, 20);
   Points to(3, 20);
