@@ -15,21 +15,21 @@
 #include "taut/io/output_file.hpp"
 
 // The format, all numbers little-endian, a real as its 64 IEEE bits, an integer in 64 bits:
-//   "taut model 2\n"
+//   "taut model 3\n"
 //   kind (0 dense, 1 local)
 //   dense: kernel (0 cubic, 1 quintic)
 //          centres, weights, polynomial, origin: each rows, columns, then the entries column by column
 //          scale, support radius
 //   local: centres, radii, coefficients, support, as above
 //   samples: points, normals as above, faces with integers
-//   report: of a dense fit three integers and nine reals, of a local one three integers and four reals
+//   report: of a dense fit five integers and ten reals, of a local one five integers and five reals
 //   checksum: FNV-1a (64 bit) of everything before it
 
 namespace taut {
 namespace {
 
 constexpr std::string_view kMagic = "taut model ";
-constexpr std::string_view kVersion = "2\n";
+constexpr std::string_view kVersion = "3\n";
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -73,7 +73,7 @@ class ModelReader {
     rest_.remove_prefix(kMagic.size());
     if (!rest_.starts_with(kVersion)) {
       file_.fail("has model version " + detail::quote(rest_.substr(0, rest_.find('\n'))) +
-                 ", this program reads version 2; fit the cloud again");
+                 ", this program reads version 3; fit the cloud again");
     }
     rest_.remove_prefix(kVersion.size());
     constexpr std::size_t kWord = 8;
@@ -173,14 +173,18 @@ PointCloud read_samples(ModelReader& in) {
 }
 
 // The numbers of a report, in the order of the file.
-auto counts(auto& report) { return std::array{&report.num_samples, &report.residual_at}; }
+auto counts(auto& report) {
+  return std::array{&report.num_samples, &report.residual_at, &report.merged_sheets.count, &report.merged_sheets.at};
+}
 auto reals(RbfReport& report) {
-  return std::array{&report.spacing,      &report.noise,        &report.smoothing,
-                    &report.offset,       &report.residual,     &report.left_out_rms,
-                    &report.left_out_max, &report.residual_rms, &report.residual_max};
+  return std::array{&report.spacing,          &report.noise,        &report.smoothing,
+                    &report.offset,           &report.residual,     &report.left_out_rms,
+                    &report.left_out_max,     &report.residual_rms, &report.residual_max,
+                    &report.merged_sheets.gap};
 }
 auto reals(LocalFitReport& report) {
-  return std::array{&report.spacing, &report.noise, &report.residual_rms, &report.residual_max};
+  return std::array{&report.spacing, &report.noise, &report.residual_rms, &report.residual_max,
+                    &report.merged_sheets.gap};
 }
 
 template <class Report>

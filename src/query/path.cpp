@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -19,6 +20,7 @@
 #include "search/path_search.hpp"
 #include "surface/formula/formula_function.hpp"
 #include "surface/point_text.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {
@@ -60,6 +62,14 @@ bool has_kinks(const Surface& surface) {
   return formula != nullptr && formula->program().has_kinks();
 }
 
+/// What is known against a fitted surface puts every path on it in doubt.
+PathResult with_doubt(PathResult result, const std::string& doubt) {
+  if (doubt.empty() || result.status != Status::ok || result.from == result.to) return result;
+  result.rivals_sought = false;
+  result.message = result.message.empty() ? doubt : result.message + "; " + doubt;
+  return result;
+}
+
 }  // namespace
 
 struct PathSolver::Impl {
@@ -69,6 +79,7 @@ struct PathSolver::Impl {
         user(user_of),
         context(in_turn(user, turn, batch)),
         search(surface, options, context),
+        doubt(fit_doubt(surface)),
         kinked(surface.dim() == 3 && surface.codim() == 1 && has_kinks(surface)) {}
 
   using Corrector = detail::Corrector;
@@ -80,6 +91,7 @@ struct PathSolver::Impl {
   std::shared_ptr<std::atomic<bool>> batch = std::make_shared<std::atomic<bool>>(false);
   Context context;  // the user's, fit for several threads
   detail::PathSearch search;
+  std::string doubt;  // about the surface itself
   bool kinked;
   std::mutex facets_turn;
   std::unique_ptr<detail::FacetSearch> facets;                    // made where it is first needed
@@ -130,7 +142,7 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
       for (Index j = first; j < last; ++j) {
         PathResult& result = results[static_cast<std::size_t>(j)];
         try {
-          result = body(j, corrector);
+          result = with_doubt(body(j, corrector), doubt);
         } catch (const Cancelled&) {
           throw;
         } catch (const Error& error) {
@@ -218,7 +230,8 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   impl.expect_points(detail::chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
-  PathResult result = impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector);
+  PathResult result = with_doubt(
+      impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector), impl.doubt);
   result.seconds.cells += box_seconds;
   return result;
 }

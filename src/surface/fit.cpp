@@ -69,4 +69,9 @@ std::optional<double> fit_residual(const Surface& surface) {
   return fitted->residual_rms();
 }
 
+std::string fit_doubt(const Surface& surface) {
+  const auto* const fitted = dynamic_cast<const detail::FittedFunction*>(&surface.function());
+  return fitted == nullptr ? std::string() : fitted->doubt();
+}
+
 }  // namespace taut

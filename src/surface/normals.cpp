@@ -12,6 +12,7 @@
 #include "surface/normals/given_normals.hpp"
 #include "surface/normals/neighbour_graph.hpp"
 #include "surface/normals/orientation.hpp"
+#include "surface/normals/sheet_split.hpp"
 #include "surface/normals/spread_normals.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
@@ -27,11 +28,24 @@ using detail::Neighbour;
 Points by_spread(const Points& points, const KdTree& tree, Index neighbours, const Context& context) {
   std::vector<Index> all(static_cast<std::size_t>(points.cols()));
   std::iota(all.begin(), all.end(), Index{0});
-  const Index enough = detail::neighbours_for_noise(points, tree, neighbours, context);
-  Points normals = detail::least_spread(points, tree, all, enough, context);
+  const detail::SheetSplit split(points, tree, context);
   const detail::NeighbourGraph graph(points, tree, neighbours, context);
-  const std::vector<Index> piece = detail::orient_along_forest(points, graph, normals);
+  Points normals;
+  std::vector<Index> piece;
+  if (split.any()) {
+    // The other sheet is no noise, which more neighbours would average.
+    normals = detail::least_spread(points, tree, all, neighbours, context);
+    for (const Index i : all) {
+      if (split.is_split(i)) normals.col(i) = split.normal(i);
+    }
+    piece = detail::orient_sheets(points, graph, split, normals);
+  } else {
+    const Index enough = detail::neighbours_for_noise(points, tree, neighbours, context);
+    normals = detail::least_spread(points, tree, all, enough, context);
+    piece = detail::orient_along_forest(points, graph, normals);
+  }
   detail::turn_outwards(points, detail::local_spacing(points, tree, context), piece, normals);
+  if (split.any()) detail::turn_from_opposite(points, split, piece, normals);
   return normals;
 }
 

@@ -116,7 +116,7 @@ TEST(ModelFile, SaysWhatIsWrong) {
   };
   EXPECT_NE(message("ply\nformat ascii 1.0\n").find("is not a model"), std::string::npos);
   EXPECT_NE(message("taut model 1\nsomething").find("version '1'"), std::string::npos);
-  EXPECT_NE(message("taut model 2\nabcdefghijkl").find("checksum"), std::string::npos);
+  EXPECT_NE(message("taut model 3\nabcdefghijkl").find("checksum"), std::string::npos);
   EXPECT_THROW((void)read_model(folder.path() / "missing.taut"), IoError);
   EXPECT_THROW((void)read_model(folder.path()), IoError);
   EXPECT_THROW(write_model(folder.path() / "no such folder" / "s.taut", RbfModel{}), IoError);

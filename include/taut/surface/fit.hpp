@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "taut/core/context.hpp"
@@ -42,5 +43,9 @@ using FitModel = std::variant<RbfModel, LocalFitModel>;
 /// How far a fitted surface stands off its samples (root mean square of |F| / |grad F|), model units: digits of a
 /// length beyond that say nothing about what was sampled. None for surfaces that were not fitted.
 [[nodiscard]] std::optional<double> fit_residual(const Surface& surface);
+
+/// Why a fitted surface may not be the one that was sampled (MergedSheets), in one sentence; empty where nothing is
+/// known against it, and for surfaces that were not fitted. Paths carry it as their message.
+[[nodiscard]] std::string fit_doubt(const Surface& surface);
 
 }  // namespace taut

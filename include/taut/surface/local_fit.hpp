@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "taut/core/context.hpp"
+#include "taut/surface/merged_sheets.hpp"
 #include "taut/surface/point_cloud.hpp"
 #include "taut/surface/surface.hpp"
 
@@ -17,7 +18,8 @@ struct LocalFitReport {
   double noise = 0;             ///< estimated standard deviation of the samples along the normal
   double residual_rms = 0;      ///< |F| / |grad F| at the samples: how far the surface stands off them
   double residual_max = 0;
-  Index residual_at = 0;  ///< the sample (of the cloud, from 0) with the largest
+  Index residual_at = 0;       ///< the sample (of the cloud, from 0) with the largest
+  MergedSheets merged_sheets;  ///< `at` counts in the cloud
 };
 
 /// A surface in R^2 or R^3 put together of many small pieces: polynomials of degree three, each fitted to the samples

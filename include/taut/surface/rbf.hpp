@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "taut/core/context.hpp"
+#include "taut/surface/merged_sheets.hpp"
 #include "taut/surface/normals.hpp"
 #include "taut/surface/point_cloud.hpp"
 #include "taut/surface/surface.hpp"
@@ -30,7 +31,8 @@ struct RbfReport {
   double left_out_max = 0;
   double residual_rms = 0;  ///< the same at all samples
   double residual_max = 0;
-  Index residual_at = 0;  ///< the sample (of the cloud, from 0) with the largest
+  Index residual_at = 0;       ///< the sample (of the cloud, from 0) with the largest
+  MergedSheets merged_sheets;  ///< `at` counts in the cloud
 };
 
 /// F(x) = scale F_unit((x - origin) / scale), F_unit(u) = sum_i weight_i phi(|u - centre_i|) + a polynomial: what

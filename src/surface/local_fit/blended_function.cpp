@@ -5,11 +5,14 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "surface/fitted_function.hpp"
 #include "surface/local_fit/patch_range.hpp"
 #include "surface/local_fit/patch_tree.hpp"
+#include "surface/normals/merged_sheets.hpp"
 #include "surface/rbf/kd_tree.hpp"
 
 // F = sum_i w_i f_i / sum_i w_i over the patches whose balls hold x (a partition of unity: Ohtake, Belyaev, Alexa,
@@ -48,12 +51,13 @@ struct RangeScratch {
 template <int D>
 class BlendedFunction : public FittedFunction {
  public:
-  BlendedFunction(std::vector<Patch<D>> patches, Points centres, double residual_rms)
+  BlendedFunction(std::vector<Patch<D>> patches, Points centres, double residual_rms, std::string doubt)
       : patches_(std::move(patches)),
         centres_(std::move(centres)),
         tree_(patches_),
         nearest_(centres_),
-        residual_rms_(residual_rms) {
+        residual_rms_(residual_rms),
+        doubt_(std::move(doubt)) {
     for (const Patch<D>& patch : patches_) largest_radius_ = std::max(largest_radius_, patch.radius);
   }
 
@@ -61,6 +65,7 @@ class BlendedFunction : public FittedFunction {
   [[nodiscard]] Index codim() const override { return 1; }
   [[nodiscard]] std::string_view kind() const override { return "patches"; }
   [[nodiscard]] double residual_rms() const override { return residual_rms_; }
+  [[nodiscard]] std::string doubt() const override { return doubt_; }
   [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
 
   static constexpr std::size_t kDim = D;
@@ -92,6 +97,7 @@ class BlendedFunction : public FittedFunction {
   PatchTree<D> tree_;
   KdTree nearest_;  // over centres_
   double residual_rms_;
+  std::string doubt_;
   double largest_radius_ = 0;
 };
 
@@ -274,7 +280,8 @@ std::shared_ptr<const ImplicitFunction> make(const LocalFitModel& model) {
       patches[i].cubic.coefficient[c] = model.coefficients(static_cast<Index>(c), column);
     }
   }
-  return std::make_shared<BlendedFunction<D>>(std::move(patches), model.centres, model.report.residual_rms);
+  return std::make_shared<BlendedFunction<D>>(std::move(patches), model.centres, model.report.residual_rms,
+                                              doubt(model.report.merged_sheets, model.samples.points));
 }
 
 }  // namespace

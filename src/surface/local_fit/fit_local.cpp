@@ -13,6 +13,7 @@
 #include "surface/local_fit/patch_cover.hpp"
 #include "surface/local_fit/patch_solve.hpp"
 #include "surface/local_fit/support_radii.hpp"
+#include "surface/normals/merged_sheets.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
 #include "taut/core/error.hpp"
@@ -120,13 +121,12 @@ Index fit_patches(OrientedSamples samples, const KdTree& tree, const std::vector
 }
 
 /// How far the surface stands off the samples; `original`: which sample of the cloud each is.
-void measure_residual(const Points& points, const std::vector<Index>& original, LocalFitModel& model,
-                      const Context& context) {
-  const std::shared_ptr<const ImplicitFunction> function = detail::make_blended_function(model);
+void measure_residual(const Points& points, const std::vector<Index>& original, const ImplicitFunction& function,
+                      LocalFitReport& report, const Context& context) {
   constexpr Index kGrain = 1024;
   Vector miss(points.cols());
   detail::parallel_for(context, 0, points.cols(), kGrain, [&](Index first, Index last) {
-    const auto evaluator = function->make_evaluator();
+    const auto evaluator = function.make_evaluator();
     const Points x = points.middleCols(first, last - first);
     Vector value(x.cols());
     Points gradient(x.rows(), x.cols());
@@ -134,9 +134,9 @@ void measure_residual(const Points& points, const std::vector<Index>& original, 
     miss.segment(first, last - first) = value.array().abs() / gradient.colwise().norm().transpose().array();
   });
   Index worst = 0;
-  model.report.residual_max = miss.maxCoeff(&worst);
-  model.report.residual_at = original[static_cast<std::size_t>(worst)];
-  model.report.residual_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
+  report.residual_max = miss.maxCoeff(&worst);
+  report.residual_at = original[static_cast<std::size_t>(worst)];
+  report.residual_rms = std::sqrt(miss.squaredNorm() / static_cast<double>(miss.size()));
 }
 
 }  // namespace
@@ -178,7 +178,11 @@ LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options,
   report.spacing = detail::quantile(spacing, 0.5);
   report.noise =
       by_size && !options.smoothing ? 0 : report.spacing * detail::relative_noise(samples.points, normals, tree);
-  measure_residual(samples.points, merged.merged_from, model, context);
+  const std::shared_ptr<const ImplicitFunction> function = detail::make_blended_function(model);
+  measure_residual(samples.points, merged.merged_from, *function, report, context);
+  report.merged_sheets = detail::find_merged_sheets(samples.points, normals, tree, *function, context);
+  report.merged_sheets.at = merged.merged_from[static_cast<std::size_t>(report.merged_sheets.at)];
+  if (report.merged_sheets.count > 0) context.tell(detail::doubt(report.merged_sheets, cloud.points));
   return model;
 }
 

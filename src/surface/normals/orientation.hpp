@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "surface/normals/neighbour_graph.hpp"
+#include "surface/normals/sheet_split.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
@@ -20,7 +21,16 @@ struct EdgeComparison {
 [[nodiscard]] std::vector<Index> orient_along_forest(const Points& points, const NeighbourGraph& graph,
                                                      Points& normals);
 
+/// The same where some samples lie on two sheets side by side: those of one sheet are made to agree first, then the
+/// sheets face away from each other.
+[[nodiscard]] std::vector<Index> orient_sheets(const Points& points, const NeighbourGraph& graph,
+                                               const SheetSplit& split, Points& normals);
+
 /// Turns each piece so that its flux sum (p - centre) . n dA is positive: d times the volume it encloses where closed.
 void turn_outwards(const Points& points, const Vector& spacing, const std::vector<Index>& piece, Points& normals);
+
+/// Turns each piece most of whose samples have a sheet opposite so that most of those sheets lie inside.
+void turn_from_opposite(const Points& points, const SheetSplit& split, const std::vector<Index>& piece,
+                        Points& normals);
 
 }  // namespace taut::detail

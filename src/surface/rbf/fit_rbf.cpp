@@ -7,6 +7,7 @@
 
 #include "core/parallel.hpp"
 #include "surface/describe.hpp"
+#include "surface/normals/merged_sheets.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
 #include "surface/rbf/off_surface.hpp"
@@ -59,8 +60,7 @@ double smoothing_for(double noise) {
 /// |F| / |grad F| at all points, and at those that are not among the `chosen` (ascending). `original`: which sample of
 /// the cloud each is.
 void measure_residual(const Points& points, const std::vector<Index>& chosen, const std::vector<Index>& original,
-                      RbfModel& model, const Context& context) {
-  const detail::RbfFunction function(model);
+                      const detail::RbfFunction& function, RbfReport& report, const Context& context) {
   Vector miss(points.cols());
   constexpr Index kGrain = 64;
   detail::parallel_for(context, 0, miss.size(), kGrain, [&](Index first, Index last) {
@@ -72,7 +72,6 @@ void measure_residual(const Points& points, const std::vector<Index>& chosen, co
     }
   });
   const auto rms = [](const Vector& x) { return std::sqrt(x.squaredNorm() / static_cast<double>(x.size())); };
-  RbfReport& report = model.report;
   Index worst = 0;
   report.residual_max = miss.maxCoeff(&worst);
   report.residual_at = original[static_cast<std::size_t>(worst)];
@@ -161,7 +160,13 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
     model.support_radius = model.scale * detail::default_support_radius(unit, normals, tree);
   }
 
-  measure_residual(merged.points, chosen, merged.merged_from, model, context);
+  const detail::RbfFunction function(model);
+  measure_residual(merged.points, chosen, merged.merged_from, function, model.report, context);
+  const KdTree world_tree(merged.points);
+  MergedSheets& sheets = model.report.merged_sheets;
+  sheets = detail::find_merged_sheets(merged.points, normals, world_tree, function, context);
+  sheets.at = merged.merged_from[static_cast<std::size_t>(sheets.at)];
+  if (sheets.count > 0) context.tell(detail::doubt(sheets, cloud.points));
   return model;
 }
 

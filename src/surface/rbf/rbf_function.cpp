@@ -3,6 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "surface/normals/merged_sheets.hpp"
+
 namespace taut::detail {
 namespace {
 
@@ -34,6 +36,7 @@ RbfFunction::RbfFunction(const RbfModel& model)
       space_{model.origin.size(), model.kernel == RbfKernel::quintic ? 2 : 1},
       polynomial_(model.polynomial),
       sum_(model.kernel, model.centres, model.weights),
+      doubt_(detail::doubt(model.report.merged_sheets, model.samples.points)),
       residual_rms_(model.report.residual_rms) {}
 
 std::unique_ptr<Evaluator> RbfFunction::make_evaluator() const { return std::make_unique<RbfEvaluator>(*this); }

@@ -19,6 +19,7 @@ class RbfFunction : public FittedFunction {
   [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
   [[nodiscard]] std::string_view kind() const override { return "rbf"; }
   [[nodiscard]] double residual_rms() const override { return residual_rms_; }
+  [[nodiscard]] std::string doubt() const override { return doubt_; }
 
   /// Value, gradient (d) and Hessian (d x d) at one point; null outputs are not computed.
   void evaluate(const double* x, double* value, double* gradient, double* hessian) const;
@@ -29,6 +30,7 @@ class RbfFunction : public FittedFunction {
   PolynomialSpace space_;
   Vector polynomial_;
   KernelSum sum_;
+  std::string doubt_;
   double residual_rms_;
 };
 
