@@ -15,8 +15,10 @@
 #include "taut/core/error.hpp"
 #include "taut/io/model_file.hpp"
 #include "taut/io/read_clauses.hpp"
+#include "taut/io/read_neural_network.hpp"
 #include "taut/io/read_point_cloud.hpp"
 #include "taut/io/read_points.hpp"
+#include "taut/io/read_scene.hpp"
 #include "taut/io/read_volume.hpp"
 
 namespace taut::app {
@@ -43,10 +45,40 @@ std::vector<std::pair<bool, const char*>> volume_options(const VolumeArguments& 
 
 Surface load_file(const SurfaceArguments& arguments, const Context& context) {
   const std::string& file = arguments.surface;
+  if (is_height_file(file, arguments.height)) {
+    refuse_options({{!arguments.parameters.empty(), "--set"},
+                    {!arguments.variables.empty(), "--vars"},
+                    {!arguments.domain.empty(), "--domain"},
+                    {arguments.dim.has_value(), "--dim"}},
+                   file, "formulas; {} holds heights");
+    refuse_options(volume_options(arguments.volume), file, "volumes; {} holds heights");
+    refuse_options(fit_options(arguments.fit), file, "point files; {} holds heights");
+    return load_heights(file, arguments.height, context);
+  }
+  if (is_network_file(file)) {
+    refuse_options({{!arguments.parameters.empty(), "--set"},
+                    {!arguments.variables.empty(), "--vars"},
+                    {!arguments.domain.empty(), "--domain"},
+                    {arguments.dim.has_value(), "--dim"},
+                    {arguments.volume.label.has_value(), "--label"},
+                    {arguments.height.given() != nullptr, arguments.height.given()}},
+                   file, "other surfaces; {} holds the weights of a network");
+    refuse_options(fit_options(arguments.fit), file, "point files; {} holds the weights of a network");
+    return load_network(file, arguments.network, arguments.volume.iso, context);
+  }
+  refuse_options({{arguments.network.given() != nullptr, arguments.network.given()}}, file,
+                 "networks (.npz, .safetensors); {} is none");
+  refuse_options({{arguments.height.given() != nullptr, arguments.height.given()}}, file,
+                 "pictures (.pgm, .png) and, with --heights, .npy arrays; {} is none");
   if (file.ends_with(".vm")) {
     refuse_options(volume_options(arguments.volume), file, "volumes; {} is a clause file");
     refuse_options(fit_options(arguments.fit), file, "point files; {} is a clause file");
     return read_clauses(file, formula_options(arguments), context);
+  }
+  if (file.ends_with(".scene")) {
+    refuse_options(volume_options(arguments.volume), file, "volumes; {} is a scene");
+    refuse_options(fit_options(arguments.fit), file, "point files; {} is a scene");
+    return read_scene(file, formula_options(arguments), context);
   }
   if (file.ends_with(".txt") && holds_formula(file)) {
     throw UsageError(fmt::format("{}: holds a formula and no points; write @{}", file, file));
@@ -73,6 +105,10 @@ Surface load_file(const SurfaceArguments& arguments, const Context& context) {
 
 Surface load_formula(const SurfaceArguments& arguments) {
   refuse_options(volume_options(arguments.volume), arguments.surface, "volumes; '{}' is a formula");
+  refuse_options({{arguments.height.given() != nullptr, arguments.height.given()}}, arguments.surface,
+                 "height fields; '{}' is a formula");
+  refuse_options({{arguments.network.given() != nullptr, arguments.network.given()}}, arguments.surface,
+                 "networks; '{}' is a formula");
   refuse_options(fit_options(arguments.fit), arguments.surface, "point files; '{}' is a formula");
   return read_formula(arguments);
 }
@@ -92,8 +128,8 @@ Surface with_samples(const Surface& surface, const std::string& file, const Cont
 void SurfaceArguments::add_to(CLI::App& command) {
   command
       .add_option("SURFACE", surface,
-                  "a formula such as 'x^2+y^2+4z^2=1' or @FILE that holds one, a point cloud, mesh, volume or clause "
-                  "(.vm) file, or a .taut model")
+                  "a formula such as 'x^2+y^2+4z^2=1' or @FILE that holds one, a point cloud, mesh, volume, clause "
+                  "(.vm), scene (.scene), height (.pgm, .png) or network (.npz, .safetensors) file, or a .taut model")
       ->required();
   command
       .add_option("--dim", dim,
@@ -120,6 +156,8 @@ void SurfaceArguments::add_to(CLI::App& command) {
   command.add_option("--box", box, "where to look: LO,HI or X0,X1,Y0,Y1,... (default: found)");
   add_fit_options(command, fit);
   volume.add_to(command);
+  height.add_to(command);
+  network.add_to(command);
 }
 
 void add_fit_options(CLI::App& command, FitOptions& options) {

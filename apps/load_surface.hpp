@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "height_argument.hpp"
+#include "network_argument.hpp"
 #include "taut/core/context.hpp"
 #include "taut/surface/fit.hpp"
 #include "taut/surface/surface.hpp"
@@ -23,6 +25,8 @@ struct SurfaceArguments {
   std::string samples;  // file
   FitOptions fit;
   VolumeArguments volume;
+  HeightArguments height;
+  NetworkArguments network;
 
   void add_to(CLI::App& command);
 };

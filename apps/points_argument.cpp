@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "taut/core/error.hpp"
+#include "taut/surface/height_field.hpp"
 
 namespace taut::app {
 namespace {
@@ -56,7 +58,12 @@ Vector parse_point(const std::string& text, const char* option, const Surface& s
     }
     return surface.samples()->points.col(index);
   }
-  const Vector point = parse_numbers(text, option);
+  Vector point = parse_numbers(text, option);
+  if (point.size() == 2 && surface.kind() == "heights") {
+    const std::optional<double> z = height_at(surface, point(0), point(1));
+    if (!z) throw InvalidArgument(fmt::format("{} {}: lies outside of the height field", option, text));
+    point = Eigen::Vector3d(point(0), point(1), *z);
+  }
   if (point.size() > surface.dim() && surface.kind() == "formula") {
     throw InvalidArgument(
         fmt::format("{} {}: has {} coordinates, but the formula uses only {} variables; --dim {} puts "

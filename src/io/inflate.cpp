@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 22;
 constexpr int kGzipOrZlib = 15 + 32;
+constexpr int kRaw = -15;
 
 struct Stream : z_stream {
   Stream() : z_stream() {}
@@ -28,9 +29,9 @@ struct Unpacked {
   bool complete = false;  // the data's own end was met
 };
 
-Unpacked unpack(const InputFile& file, std::string_view packed, std::size_t most) {
+Unpacked unpack(const InputFile& file, std::string_view packed, std::size_t most, int format = kGzipOrZlib) {
   Stream stream;
-  if (inflateInit2(&stream, kGzipOrZlib) != Z_OK) file.fail("zlib cannot start; free some memory");
+  if (inflateInit2(&stream, format) != Z_OK) file.fail("zlib cannot start; free some memory");
   Unpacked result;
   std::string& bytes = result.bytes;
   std::size_t filled = 0;
@@ -68,6 +69,12 @@ std::string inflate(const InputFile& file, std::string_view packed, std::size_t 
   return unpack(file, packed, most).bytes;
 }
 
+std::string inflate_raw(const InputFile& file, std::string_view packed, std::size_t size) {
+  std::string bytes = unpack(file, packed, size, kRaw).bytes;
+  if (bytes.size() != size) file.fail("the compressed data end too early; the file is cut short");
+  return bytes;
+}
+
 void gunzip(InputFile& file) {
   Unpacked unpacked = unpack(file, file.bytes, std::numeric_limits<std::size_t>::max());
   if (!unpacked.complete) file.fail("the compressed data end too early; the file is cut short");
@@ -77,6 +84,9 @@ void gunzip(InputFile& file) {
 #else
 std::string inflate(const InputFile& file, std::string_view, std::size_t) {
   file.fail("is compressed, and this Taut was built without zlib; unpack it first");
+}
+std::string inflate_raw(const InputFile& file, std::string_view packed, std::size_t size) {
+  return inflate(file, packed, size);
 }
 void gunzip(InputFile& file) { file.bytes = inflate(file, file.bytes, 0); }
 #endif

@@ -13,6 +13,9 @@ namespace taut::detail {
 /// damaged data, and where Taut was built without zlib.
 [[nodiscard]] std::string inflate(const InputFile& file, std::string_view packed, std::size_t most);
 
+/// The same for bare deflated data, as ZIP archives hold them. Throws, too, where they are not `size` bytes.
+[[nodiscard]] std::string inflate_raw(const InputFile& file, std::string_view packed, std::size_t size);
+
 /// Unpacks all of a gzip file in place. Throws IoError for data that are damaged, cut short, or no gzip data.
 void gunzip(InputFile& file);
 

@@ -9,7 +9,9 @@
 #include "surface/formula/limits.hpp"
 #include "surface/formula/names.hpp"
 #include "surface/formula/parser.hpp"
+#include "surface/formula/scene_lines.hpp"
 #include "taut/core/error.hpp"
+#include "taut/surface/scene_text.hpp"
 
 namespace taut {
 namespace {
@@ -76,6 +78,18 @@ Surface parse_clauses(std::string_view clauses, const FormulaOptions& options) {
   extras.box = options.box;
   if (!options.domain.empty()) extras.domain = parse_domain(options, dim);
   return Surface(compile(std::move(graph), {found.root}, dim), std::move(extras));
+}
+
+Surface parse_scene(std::string_view text, const FormulaOptions& options) {
+  require_dim(options.dim);
+  Graph graph;
+  Names names(options.variables, options.parameters, options.dim);
+  std::vector<NodeId> components = detail::parse_scene_lines(text, options.parameters, names, graph);
+  const Index dim = options.dim.value_or(std::max<Index>(2, names.variables_used()));
+  SurfaceExtras extras;
+  extras.box = options.box;
+  if (!options.domain.empty()) extras.domain = parse_domain(options, dim);
+  return Surface(compile(std::move(graph), std::move(components), dim), std::move(extras));
 }
 
 std::shared_ptr<const ImplicitFunction> parse_function(std::string_view formula, const FormulaOptions& options) {

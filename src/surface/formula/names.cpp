@@ -8,6 +8,7 @@
 
 #include "surface/formula/diagnostic.hpp"
 #include "surface/formula/limits.hpp"
+#include "surface/formula/solids.hpp"
 #include "taut/core/error.hpp"
 #include "taut/core/nearest_name.hpp"
 
@@ -154,6 +155,30 @@ std::optional<std::uint32_t> Names::variable(std::string_view text, const Token&
   return static_cast<std::uint32_t>(index);
 }
 
+bool Names::use_space() {
+  constexpr Index kSpace = 3;
+  const Index most = variables_->empty() ? dim_.value_or(kSpace) : static_cast<Index>(variables_->size());
+  if (most < kSpace) return false;
+  variables_used_ = std::max(variables_used_, kSpace);
+  return true;
+}
+
+std::optional<NodeId> Names::definition(std::string_view name) const {
+  const auto found = definitions_.find(name);
+  return found == definitions_.end() ? std::nullopt : std::optional(found->second);
+}
+
+void Names::check_definable(const std::string& name) const {
+  check_new("the definition", name);
+  const bool is_variable =
+      variables_->empty() ? is_letter_variable(name) || is_numbered(name) : own_variable(name).has_value();
+  if (is_variable) throw InvalidArgument("the definition " + quoted(name) + " is the name of a variable");
+  if (find_solid_function(name) != nullptr) {
+    throw InvalidArgument("the definition " + quoted(name) + " is the name of a function");
+  }
+  if (definition(name)) throw InvalidArgument(quoted(name) + " is defined twice");
+}
+
 std::optional<double> Names::value(std::string_view name) const {
   if (name == "pi") return std::numbers::pi;
   if (name == "e") return std::numbers::e;
@@ -163,7 +188,7 @@ std::optional<double> Names::value(std::string_view name) const {
 }
 
 std::size_t Names::first_factor(std::string_view name) const {
-  if (!variables_->empty() || value(name)) return name.size();
+  if (!variables_->empty() || value(name) || definition(name)) return name.size();
   std::size_t first = 0;
   for (std::size_t at = 0; at < name.size();) {
     std::size_t end = at + 1;
@@ -189,6 +214,8 @@ UnknownName Names::unknown(std::string_view text, const Token& token) const {
   }
   known.insert(known.end(), {"pi", "e"});
   for (const Function& function : kFunctions) known.push_back(function.name);
+  for (const SolidFunction& function : solid_functions()) known.push_back(function.name);
+  for (const auto& [defined, node] : definitions_) known.push_back(defined);
 
   std::string_view nearest = nearest_name(name, known);
   for (const auto& [foreign, ours] : kForeignNames) {
@@ -200,6 +227,7 @@ UnknownName Names::unknown(std::string_view text, const Token& token) const {
   if (next != text.npos && text[next] == '(') {
     reason += " (functions:";
     for (const Function& function : kFunctions) reason.append(" ").append(function.name);
+    for (const SolidFunction& function : solid_functions()) reason.append(" ").append(function.name);
     return {parse_error(text, token.column, reason + ")").what(), token.column, std::string(token.text)};
   }
   reason += " (known: ";

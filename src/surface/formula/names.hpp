@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -36,6 +37,16 @@ class Names {
   /// x y z w and numbered variables are mixed.
   std::optional<std::uint32_t> variable(std::string_view text, const Token& token);
 
+  /// Takes x, y and z for used: a body stands in space. False where the dimension asked for, or the number of the
+  /// user's own variables, is less than 3.
+  bool use_space();
+
+  /// From now on `name` means `node`.
+  void define(const std::string& name, NodeId node) { definitions_[name] = node; }
+  [[nodiscard]] std::optional<NodeId> definition(std::string_view name) const;
+  /// May `name` be defined: is it a name, and means nothing yet? Throws InvalidArgument where it may not.
+  void check_definable(const std::string& name) const;
+
   /// The value of a parameter or of pi, e.
   [[nodiscard]] std::optional<double> value(std::string_view name) const;
 
@@ -58,6 +69,7 @@ class Names {
   const std::vector<std::string>* variables_;
   const std::map<std::string, double>* parameters_;
   std::optional<Index> dim_;
+  std::map<std::string, NodeId, std::less<>> definitions_;
   Style style_ = Style::undecided;
   Index variables_used_ = 0;
 };

@@ -1,11 +1,13 @@
 #include "surface/formula/parser.hpp"
 
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "surface/formula/diagnostic.hpp"
 #include "surface/formula/lexer.hpp"
 #include "surface/formula/limits.hpp"
+#include "surface/formula/solids.hpp"
 
 namespace taut::detail {
 namespace {
@@ -23,6 +25,7 @@ struct Operator {
 /// stacks.
 struct Frame {
   const Function* function = nullptr;  // of |...|: abs
+  const SolidFunction* solid = nullptr;
   bool bars = false;
   double power = 1;  // of the call's value, as in sin^2(x)
   std::size_t column = 0;
@@ -38,6 +41,7 @@ class Parser {
   Parser(std::string_view text, Names& names, Graph& graph) : lexer_(text), names_(names), graph_(graph) { advance(); }
 
   std::vector<NodeId> statements(Statements allowed);
+  NodeId only_expression();
 
  private:
   void statement(Statements allowed);
@@ -49,6 +53,12 @@ class Parser {
   bool after_operand();  // reads what follows an operand; false at the end of the expression
   void name();
   bool function_call(const Function& function);
+  [[nodiscard]] const SolidFunction* solid_named(std::string_view name) const;
+  void solid_call(const SolidFunction& solid);
+  NodeId make_solid(const SolidFunction& solid, std::size_t column, std::size_t first_argument);
+  static std::string usage(const SolidFunction& solid) {
+    return std::string(solid.name) + "(" + std::string(solid.parameters) + ")";
+  }
   double power_of_call(const Function& function);
   void bare_argument(const Function& function, std::size_t column, double power);
   void superscript();
@@ -101,6 +111,13 @@ std::vector<NodeId> Parser::statements(Statements allowed) {
   }
   require_variables();
   return std::move(components_);
+}
+
+NodeId Parser::only_expression() {
+  if (token_.kind == TokenKind::end) fail(0, "nothing is defined here");
+  const NodeId result = expression();
+  if (token_.kind != TokenKind::end) fail(token_.column, "a definition is one expression, it ends before " + shown());
+  return result;
 }
 
 void Parser::require_variables() const {
@@ -163,6 +180,8 @@ NodeId Parser::expression() {
   if (frames_.size() > 1) {
     const Frame& open = frames_.back();
     if (open.bars) fail(open.column, "this '|' is never closed");
+    if (open.solid != nullptr)
+      fail(open.column, "the '(' of this " + std::string(open.solid->name) + " is never closed");
     fail(open.column, open.function ? "the '(' of this " + std::string(open.function->name) + " is never closed"
                                     : "this '(' is never closed");
   }
@@ -190,6 +209,10 @@ bool Parser::operand() {
       return true;
     case TokenKind::name: {
       if (const Function* found = find_function(token_.text)) return function_call(*found);
+      if (const SolidFunction* solid = solid_named(token_.text)) {
+        solid_call(*solid);
+        return false;
+      }
       name();
       return true;
     }
@@ -217,6 +240,8 @@ void Parser::name() {
     node = graph_.variable(*index);
   } else if (const auto value = names_.value(token.text)) {
     node = graph_.constant(*value);
+  } else if (const auto defined = names_.definition(token.text)) {
+    node = *defined;
   } else {
     throw names_.unknown(lexer_.text(), token);
   }
@@ -236,6 +261,40 @@ bool Parser::function_call(const Function& function) {
   push_frame(&function, column).power = power;
   advance();
   return false;
+}
+
+/// A parameter or definition of the same name comes first.
+const SolidFunction* Parser::solid_named(std::string_view name) const {
+  const SolidFunction* const solid = find_solid_function(name);
+  return solid == nullptr || names_.value(name) || names_.definition(name) ? nullptr : solid;
+}
+
+void Parser::solid_call(const SolidFunction& solid) {
+  const std::size_t column = token_.column;
+  advance();
+  if (token_.kind != TokenKind::open) {
+    fail(column, std::string(solid.name) + " is a function and needs parentheses: " + usage(solid));
+  }
+  if (!names_.use_space()) fail(column, std::string(solid.name) + " is for bodies in space: it needs 3 dimensions");
+  push_frame(nullptr, column).solid = &solid;
+  advance();
+}
+
+NodeId Parser::make_solid(const SolidFunction& solid, std::size_t column, std::size_t first_argument) {
+  const std::span<const NodeId> arguments(values_.data() + first_argument, values_.size() - first_argument);
+  const std::size_t count = arguments.size();
+  // scale takes one factor or three
+  const bool between = solid.max_arguments == 4 && solid.min_arguments == 2 && count == 3;
+  if (count < solid.min_arguments || count > solid.max_arguments || between) {
+    fail(column, usage(solid) + ": here it has " + std::to_string(count) + (count == 1 ? " argument" : " arguments"));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!solid.must_be_positive(i, count) || !graph_.is_constant(arguments[i])) continue;
+    const double value = graph_[arguments[i]].value;
+    if (value > 0) continue;
+    fail(column, usage(solid) + ": argument " + std::to_string(i + 1) + " must be above 0");
+  }
+  return checked(solid.make(graph_, arguments), column);
 }
 
 /// The power between a function's name and its argument, as in sin^2(x); 1 if there is none.
@@ -308,7 +367,7 @@ bool Parser::after_operand() {
         return true;
       case TokenKind::comma: {
         Frame& frame = frames_.back();
-        if (frame.function == nullptr) {
+        if (frame.function == nullptr && frame.solid == nullptr) {
           fail(token.column, "a ',' outside of a function's arguments (decimals are written with a point)");
         }
         values_.push_back(end_sum());
@@ -376,6 +435,11 @@ void Parser::close() {
     NodeId result = call(*frame.function, frame.column, frame.arguments);
     if (frame.power != 1)
       result = checked(graph_.binary(Op::power, result, graph_.constant(frame.power)), frame.column);
+    values_.resize(frame.arguments);
+    values_.push_back(result);
+  }
+  if (frame.solid != nullptr) {
+    const NodeId result = make_solid(*frame.solid, frame.column, frame.arguments);
     values_.resize(frame.arguments);
     values_.push_back(result);
   }
@@ -448,6 +512,11 @@ std::vector<NodeId> parse_statements(std::string_view text, Statements allowed, 
                       "the formula is longer than the " + std::to_string(kMaxFormulaBytes) + " bytes that are read");
   }
   return Parser(text, names, graph).statements(allowed);
+}
+
+NodeId parse_expression(std::string_view text, Names& names, Graph& graph) {
+  if (text.size() > kMaxFormulaBytes) throw parse_error(text, kMaxFormulaBytes, "the expression is too long");
+  return Parser(text, names, graph).only_expression();
 }
 
 }  // namespace taut::detail

@@ -20,4 +20,7 @@ enum class Statements {
 [[nodiscard]] std::vector<NodeId> parse_statements(std::string_view text, Statements allowed, Names& names,
                                                    Graph& graph);
 
+/// Reads one expression, which may be constant. Throws ParseError.
+[[nodiscard]] NodeId parse_expression(std::string_view text, Names& names, Graph& graph);
+
 }  // namespace taut::detail

@@ -62,6 +62,8 @@ void interpolate(double* lines, Index n, const std::vector<double>& factors) {
 
 }  // namespace
 
+void interpolate_lines(double* lines, Index n) { interpolate(lines, n, elimination_factors(n)); }
+
 void prefilter(Lattice& lattice, const Context& context) {
   for (int axis = 0; axis < 3; ++axis) {
     const Index n = lattice.size[static_cast<std::size_t>(axis)] - 2;
