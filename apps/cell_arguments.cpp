@@ -5,24 +5,28 @@
 #include <CLI/CLI.hpp>
 
 #include "checks.hpp"
+#include "help_format.hpp"
 #include "points_argument.hpp"
 #include "taut/io/read_points.hpp"
 
 namespace taut::app {
 
 void add_cell_options(CLI::App& command, double& cell, GridMethod& grid) {
+  const OptionGroup group(command, "Cells and marching");
   command.add_option("--cell", cell, "grid cell size (default: chosen)")->check(positive_number());
   command.add_option("--grid", grid, "cells by subdivide (Algorithm I) or grow (Algorithm II)")
       ->transform(one_of<GridMethod>({{"subdivide", GridMethod::subdivide}, {"grow", GridMethod::grow}}));
 }
 
 void add_march_option(CLI::App& command, MarchMethod& march) {
+  const OptionGroup group(command, "Cells and marching");
   command.add_option("--march", march, "distances on the cells: convergent, axis (the paper's) or dijkstra")
       ->transform(one_of<MarchMethod>(
           {{"convergent", MarchMethod::convergent}, {"axis", MarchMethod::axis}, {"dijkstra", MarchMethod::dijkstra}}));
 }
 
 void add_envelope_option(CLI::App& command, Index& envelope) {
+  const OptionGroup group(command, "Cells and marching");
   static constexpr long long kMostLayers = 1000;
   const auto translate = [](std::string& text) -> std::string {
     if (text == "auto") {

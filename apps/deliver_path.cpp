@@ -6,6 +6,7 @@
 #include <exception>
 #include <iostream>
 
+#include "help_format.hpp"
 #include "ignored_faces.hpp"
 #include "report.hpp"
 #include "terminal.hpp"
@@ -14,6 +15,7 @@
 namespace taut::app {
 
 void DeliveryArguments::add_to(CLI::App& command) {
+  const OptionGroup group(command, "Output");
   command.add_flag("--json", json, "the result as one JSON object on stdout");
   files.add_to(command, OutputKind::path, "write");
 }

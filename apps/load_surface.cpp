@@ -10,6 +10,7 @@
 
 #include "checks.hpp"
 #include "formula_argument.hpp"
+#include "help_format.hpp"
 #include "input_files.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
@@ -126,6 +127,7 @@ Surface with_samples(const Surface& surface, const std::string& file, const Cont
 }  // namespace
 
 void SurfaceArguments::add_to(CLI::App& command) {
+  const OptionGroup group(command, "Surface");
   command
       .add_option("SURFACE", surface,
                   "a formula such as 'x^2+y^2+4z^2=1' or @FILE that holds one, a point cloud, mesh, volume, clause "
@@ -161,23 +163,20 @@ void SurfaceArguments::add_to(CLI::App& command) {
 }
 
 void add_fit_options(CLI::App& command, FitOptions& options) {
+  const OptionGroup group(command, "Fitting a cloud");
   command
       .add_option("--fit", options.method,
                   "dense: one system, of at most 2,500 samples; local: small patches, of all (default: by size)")
-      ->transform(one_of<FitMethod>({{"dense", FitMethod::dense}, {"local", FitMethod::local}}))
-      ->group("Fitting a cloud");
+      ->transform(one_of<FitMethod>({{"dense", FitMethod::dense}, {"local", FitMethod::local}}));
   command
       .add_option("--smooth", options.smoothing,
                   "smoothing of the fit; 0 passes through every sample. Of a volume: voxels")
-      ->check(number_not_below_zero())
-      ->group("Fitting a cloud");
+      ->check(number_not_below_zero());
   command.add_option("--samples-max", options.max_samples, "dense: fit at most this many well-spread samples")
-      ->check(whole_number(10, 20000))
-      ->group("Fitting a cloud");
+      ->check(whole_number(10, 20000));
   command
       .add_option("--support", options.support_radius, "the surface ends this far from its samples; negative = never")
-      ->check(any_number())
-      ->group("Fitting a cloud");
+      ->check(any_number());
 }
 
 FitModel fit_file(const std::string& path, const FitOptions& options, const Context& context,

@@ -93,7 +93,7 @@ nlohmann::ordered_json log_json(const Surface& surface, const LogMapResult& resu
   json["velocity"] = vector_json(result.velocity());
   json["arrival"] = vector_json(result.arrival);
   json["miss"] = number_json(result.miss);
-  json["unique"] = result.unique;
+  json["unique"] = unique_json(result.unique, result.tied);
   if (result.scales && result.scales->status == Status::ok) {
     const GeodesicScales& scales = *result.scales;
     json["m12"] = scales.m12;
@@ -116,7 +116,7 @@ std::vector<SceneFact> log_facts(const LogMapResult& result) {
                                            scales.M21, scales.error)});
   }
   facts.push_back({"check", fmt::format("the ray that begins so misses the point by {:.1e}", result.miss)});
-  facts.push_back({"unique", result.unique ? "yes" : "no: another direction is as good"});
+  facts.push_back({"unique", result.unique ? "yes" : result.tied ? "no: another direction is as good" : "not known"});
   std::string status(to_string(result.status));
   if (!result.message.empty()) status += ": " + result.message;
   facts.push_back({"status", status});

@@ -14,6 +14,8 @@
 #include "checks.hpp"
 #include "command_line_errors.hpp"
 #include "commands.hpp"
+#include "examples.hpp"
+#include "help_format.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/core/threads.hpp"
@@ -22,7 +24,7 @@ namespace taut::app {
 namespace {
 
 constexpr const char* kDescription =
-    "Taut pulls a string taut over a surface F(x) = 0: exact geodesics on surfaces given by a formula\n"
+    "Taut pulls a string taut over a surface F(x) = 0: exact geodesics on surfaces given by a formula "
     "or by a point cloud.";
 constexpr const char* kFooter =
     "Examples:\n"
@@ -30,8 +32,9 @@ constexpr const char* kFooter =
     "  taut path scan.ply --from @120 --to @2411 --out page.html\n"
     "  taut field 'x^4+y^4+z^4=1' --from 1,0,0 --out field.ply\n"
     "  taut exp 'x^2+y^2+4z^2=1' --from 1,0,0 --dir 0,1,1 --length 2\n"
-    "Exit codes: 0 done, 1 some lines of a batch failed, 2 wrong usage, 3 bad input, 4 no path,\n"
-    "5 not converged, 70 internal error, 130 interrupted. 'taut COMMAND --help' tells more.";
+    "Exit codes: 0 done, 1 some lines of a batch failed, 2 wrong usage, 3 bad input,\n"
+    "4 no path, 5 not converged, 70 internal error, 130 interrupted.\n"
+    "'taut COMMAND --help' tells more.";
 
 /// "--from -1,0,0" and a formula such as "-x^2+1" start like options; make them unmistakable.
 std::vector<std::string> shield_negatives(int argc, char** argv) {
@@ -90,6 +93,7 @@ void translate_help(std::vector<std::string>& arguments) {
 int run_program(int argc, char** argv) {
   CLI::App app{kDescription, "taut"};
   app.footer(kFooter);
+  app.formatter(std::make_shared<HelpFormat>());
   app.set_version_flag("-V,--version", "taut " TAUT_VERSION);
   app.require_subcommand(1);
   app.fallthrough(false);
@@ -100,6 +104,7 @@ int run_program(int argc, char** argv) {
                          add_mesh_command, add_info_command, add_paper_command}) {
     Run run = add(app);
     commands.emplace_back(app.get_subcommands(nullptr).back(), std::move(run));
+    commands.back().first->footer(examples_of(commands.back().first->get_name()));
   }
 
   std::vector<std::string> arguments = shield_negatives(argc, argv);
@@ -130,6 +135,7 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 void CommonArguments::add_to(CLI::App& command) {
+  const OptionGroup group(command, "How it runs");
   command.add_option("--threads", terminal.threads, "threads; 0 = all cores (never changes a result)")
       ->check(whole_number(0, 4096));
   command.add_flag("-q,--quiet", terminal.quiet, "no notes and no progress on stderr");

@@ -16,7 +16,7 @@ void NetworkArguments::add_to(CLI::App& command) {
       ->group(kGroup);
   command.add_option("--omega", omega, "frequency of sines: W, or FIRST,OTHERS (default: as the file says, else 30)")
       ->group(kGroup);
-  command.add_option("--beta", beta, "sharpness of softplus (default: as the file says, else 1)")
+  command.add_option("--sharpness", beta, "sharpness of softplus (default: as the file says, else 1)")
       ->check(any_number())
       ->group(kGroup);
 }
@@ -24,7 +24,7 @@ void NetworkArguments::add_to(CLI::App& command) {
 const char* NetworkArguments::given() const {
   if (activation) return "--activation";
   if (!omega.empty()) return "--omega";
-  return beta ? "--beta" : nullptr;
+  return beta ? "--sharpness" : nullptr;
 }
 
 Surface load_network(const std::string& file, const NetworkArguments& arguments, std::optional<double> iso,

@@ -14,6 +14,7 @@
 #include <set>
 #include <utility>
 
+#include "help_format.hpp"
 #include "load_surface.hpp"
 #include "path_lines.hpp"
 #include "points_argument.hpp"
@@ -122,7 +123,7 @@ class PathScene {
     }
     scene_.paths.push_back(std::move(drawn));
     if (!single) return;
-    for (std::size_t i = 1; i < path.candidates.size() && (output_.all_ways || !path.unique); ++i) {
+    for (std::size_t i = 1; i < path.candidates.size() && (output_.all_ways || path.tied); ++i) {
       const PathCandidate& other = path.candidates[i];
       if (other.points.cols() < 2) continue;
       scene_.paths.push_back(
@@ -225,6 +226,7 @@ SceneLines scene_lines(const Polylines& lines) {
 }  // namespace
 
 CLI::Option* FileArguments::add_to(CLI::App& command, OutputKind kind, const std::string& what) {
+  const OptionGroup group(command, "Output");
   command
       .add_option_function<std::string>(
           "--up",
@@ -275,6 +277,7 @@ Eigen::Vector3d FileArguments::towards_viewer() const {
 }
 
 void PathShow::add_to(CLI::App& command) {
+  const OptionGroup group(command, "Output");
   command
       .add_option_function<std::vector<std::string>>(
           "--show",

@@ -14,6 +14,7 @@
 #include "checks.hpp"
 #include "commands.hpp"
 #include "deliver_path.hpp"
+#include "help_format.hpp"
 #include "input_files.hpp"
 #include "load_surface.hpp"
 #include "output.hpp"
@@ -310,17 +311,20 @@ Run add_path_command(CLI::App& app) {
                   "newton: machine precision; flow: the paper's curvature flow; grid: the marched path as it is")
       ->transform(one_of<CorrectionMethod>(
           {{"newton", CorrectionMethod::newton}, {"flow", CorrectionMethod::flow}, {"grid", CorrectionMethod::grid}}));
-  arguments->of_the_flow = {
-      command.add_option("--spacing", options.spacing, "flow: longest interval between nodes (eps_E)")
-          ->check(positive_number()),
-      command.add_option("--beta", options.beta, "flow: balance parameter of equation (4)")->check(positive_number()),
-      command
-          .add_option("--step", options.flow_step,
-                      "flow: time steps of equation (4), implicit, or explicit as in the paper")
-          ->transform(one_of<FlowTimeStep>(
-              {{"implicit", FlowTimeStep::linearly_implicit}, {"explicit", FlowTimeStep::explicit_euler}})),
-      command.add_option("--nodes", options.flow_nodes, "flow: nodes spread evenly, or by the radius of curvature")
-          ->transform(one_of<NodeSpread>({{"even", NodeSpread::even}, {"curvature", NodeSpread::curvature}}))};
+  {
+    const OptionGroup group(command, "The flow (--method flow)");
+    arguments->of_the_flow = {
+        command.add_option("--spacing", options.spacing, "longest interval between nodes (eps_E)")
+            ->check(positive_number()),
+        command.add_option("--beta", options.beta, "balance parameter of equation (4)")->check(positive_number()),
+        command
+            .add_option("--step", options.flow_step,
+                        "time steps of equation (4), implicit, or explicit as in the paper")
+            ->transform(one_of<FlowTimeStep>(
+                {{"implicit", FlowTimeStep::linearly_implicit}, {"explicit", FlowTimeStep::explicit_euler}})),
+        command.add_option("--nodes", options.flow_nodes, "nodes spread evenly, or by the radius of curvature")
+            ->transform(one_of<NodeSpread>({{"even", NodeSpread::even}, {"curvature", NodeSpread::curvature}}))};
+  }
   command.add_flag("--all", options.all, "look for every way round, and report each of them");
   command.add_flag("--verify", arguments->verify,
                    "follow the path as an initial-value problem, and say where it lands");

@@ -6,6 +6,8 @@
 
 #include <cmath>
 
+#include "report.hpp"
+
 namespace taut::app {
 namespace {
 
@@ -26,7 +28,7 @@ void add_legs(const ViaResult& path, Json& json) {
                   {"length_error", has_path ? number(leg.length_error) : Json(nullptr)},
                   {"converged", leg.corrected ? Json(leg.status == Status::ok) : Json(nullptr)},
                   {"locally_shortest", leg.corrected ? Json(leg.locally_shortest) : Json(nullptr)},
-                  {"unique", leg.rivals_sought || !leg.unique ? nlohmann::json(leg.unique) : nlohmann::json(nullptr)}};
+                  {"unique", unique_json(leg.unique, leg.tied)}};
     if (!leg.message.empty()) entry["message"] = leg.message;
     json["legs"].push_back(std::move(entry));
   }
@@ -37,7 +39,7 @@ void add_legs(const ViaResult& path, std::vector<SceneFact>& facts) {
     const PathResult& leg = path.legs[i];
     std::string text = leg.points.cols() > 0 ? fmt::format("{:.15g} +- {:.1e}", leg.length, leg.length_error) : "none";
     if (leg.status != Status::ok) text += fmt::format(", {}", to_string(leg.status));
-    if (!leg.unique) text += ", not the only one as short";
+    if (leg.tied) text += ", not the only one as short";
     facts.push_back({fmt::format("leg {}", i + 1), text});
   }
 }

@@ -24,6 +24,12 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json vector_json(const VectorIn& x) { return std::vector<double>(x.data(), x.data() + x.size()); }
 
+Json doubts_json(Doubts doubts) {
+  Json list = Json::array();
+  doubts.for_each([&](Doubt doubt) { list.push_back(taut::to_string(doubt)); });
+  return list;
+}
+
 /// Angles in degrees; null over a border, where there is no other side.
 Json piece_json(const PathPiece& piece) {
   constexpr double kDegrees = 180 / std::numbers::pi;
@@ -38,6 +44,21 @@ Json piece_json(const PathPiece& piece) {
       break;
   }
   return json;
+}
+
+Json obstacle_json(const Obstacle& obstacle) {
+  Json json = {{"kind", taut::to_string(obstacle.kind)}};
+  if (obstacle.place.size() > 0) json["place"] = vector_json(obstacle.place);
+  if (std::isfinite(obstacle.size)) json["size"] = obstacle.size;
+  return json;
+}
+
+Json rung_json(const RungReport& report) {
+  return {{"rung", taut::to_string(report.rung)},
+          {"cell", report.cell},
+          {"cells", report.num_cells},
+          {"length", number(report.length)},
+          {"doubts", doubts_json(report.doubts)}};
 }
 
 bool has_path(const PathResult& result) { return result.points.cols() > 0; }
@@ -59,6 +80,8 @@ nlohmann::ordered_json pieces_json(const std::vector<PathPiece>& pieces) {
   for (const PathPiece& piece : pieces) list.push_back(piece_json(piece));
   return list;
 }
+
+nlohmann::ordered_json unique_json(bool unique, bool tied) { return unique || tied ? Json(unique) : Json(nullptr); }
 
 nlohmann::ordered_json points_json(const PointsIn& points) {
   Json list = Json::array();
@@ -133,8 +156,9 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
     json["candidates"].push_back(std::move(entry));
   }
   if (!result.pieces.empty()) json["pieces"] = pieces_json(result.pieces);
-  json["unique"] = nullptr;
-  if (has_path(result) && (result.rivals_sought || !result.unique)) json["unique"] = result.unique;
+  json["unique"] = has_path(result) ? unique_json(result.unique, result.tied) : Json(nullptr);
+  json["doubts"] = doubts_json(result.doubts);
+  if (result.obstacle.kind != Obstacle::Kind::none) json["obstacle"] = obstacle_json(result.obstacle);
   json["method"] = to_string(options.method);
   json["march"] = result.num_cells > 0 ? Json(to_string(options.march)) : Json(nullptr);
   json["marched"] = number(result.marched);
@@ -143,6 +167,8 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["cell"] = result.cell;
   json["cells"] = result.num_cells;
   json["iterations"] = result.num_iterations;
+  json["rungs"] = Json::array();
+  for (const RungReport& report : result.rungs) json["rungs"].push_back(rung_json(report));
   json["seconds"] = {{"surface", surface_seconds},
                      {"cells", result.seconds.cells},
                      {"march", result.seconds.march},
@@ -195,7 +221,7 @@ std::vector<SceneFact> path_facts(const Surface& surface, const PathResult& resu
   if (!result.message.empty()) status += ": " + result.message;
   facts.push_back({"status", status});
   for (std::size_t i = 1; i < result.candidates.size(); ++i) {
-    const bool as_short = i == 1 && !result.unique;
+    const bool as_short = i == 1 && result.tied;
     facts.push_back({i == 1 ? "also" : "", fmt::format("{:.15g}{}", result.candidates[i].length,
                                                        as_short ? ", as short: the shortest path is not unique" : "")});
   }
@@ -316,7 +342,7 @@ std::string path_csv(const PathResult& result, const std::string& problem, const
                                        result.corrected && result.status == Status::ok, result.locally_shortest, status)
                          : fmt::format("nan,inf,0,0,{}", status);
   if (!columns.unique) return line;
-  const bool known = answered && (result.rivals_sought || !result.unique);
+  const bool known = answered && (result.unique || result.tied);
   return line + (known ? fmt::format(",{:d}", result.unique) : ",");
 }
 

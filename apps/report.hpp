@@ -18,6 +18,9 @@ namespace taut::app {
 /// What a path on a surface with edges or a border is made of.
 [[nodiscard]] nlohmann::ordered_json pieces_json(const std::vector<PathPiece>& pieces);
 
+/// true, false where another is known to be as good, null where neither is known.
+[[nodiscard]] nlohmann::ordered_json unique_json(bool unique, bool tied);
+
 /// [[x, y, ...], ...], a point a list.
 [[nodiscard]] nlohmann::ordered_json points_json(const PointsIn& points);
 

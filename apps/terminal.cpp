@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -91,9 +92,25 @@ Context terminal_context(const TerminalOptions& options) {
 
 void clear_progress() { g_progress.clear(); }
 
+std::string in_flags(std::string_view message) {
+  constexpr std::string_view kOption = "(option ";
+  std::string text;
+  for (std::size_t at = 0; at < message.size();) {
+    const std::size_t begin = message.find(kOption, at);
+    text += message.substr(at, begin - at);
+    if (begin == std::string_view::npos) break;
+    const std::size_t name = begin + kOption.size();
+    const std::size_t end = std::min(message.find_first_of(" )", name), message.size());
+    text += "(--";
+    for (const char c : message.substr(name, end - name)) text += c == '_' ? '-' : c;
+    at = end;
+  }
+  return text;
+}
+
 void print_error(std::string_view message) {
   clear_progress();
-  fmt::print(stderr, "taut: {}\n", message);
+  fmt::print(stderr, "taut: {}\n", in_flags(message));
 }
 
 }  // namespace taut::app

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "taut/core/context.hpp"
@@ -18,6 +19,9 @@ struct TerminalOptions {
 
 /// Wipes the progress bar, so that other output starts on a clean line.
 void clear_progress();
+
+/// A message of the library with its options as the command line spells them: "(option grid_name)" is (--grid-name).
+[[nodiscard]] std::string in_flags(std::string_view message);
 
 /// One line on stderr: "taut: MESSAGE". A formula error keeps its lines with the caret.
 void print_error(std::string_view message);

@@ -79,7 +79,7 @@ ExitCode carry_one(const TransportArguments& arguments, const Surface& surface, 
     json["vectors_from"] = vectors_json(result.start);
     json["vectors"] = vectors_json(result.end);
     json["error"] = result.error;
-    json["unique"] = result.unique;
+    json["unique"] = unique_json(result.unique, result.tied);
     std::cout << json.dump() << "\n";
   } else if (result.status == Status::ok) {
     std::vector<SceneFact> facts;

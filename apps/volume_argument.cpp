@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "checks.hpp"
+#include "help_format.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/read_volume.hpp"
@@ -11,14 +12,11 @@
 namespace taut::app {
 
 void VolumeArguments::add_to(CLI::App& command) {
-  constexpr const char* kGroup = "Volumes";
-  command.add_option("--iso", iso, "the surface is where the volume has this value")
-      ->check(any_number())
-      ->group(kGroup);
+  const OptionGroup group(command, "Volumes");
+  command.add_option("--iso", iso, "the surface is where the volume has this value")->check(any_number());
   command.add_option("--label", label, "the surface bounds the voxels of this value, smoothed by --smooth voxels (1)")
-      ->check(any_number())
-      ->group(kGroup);
-  command.add_option("--grid-name", grid_name, "which grid of a .vdb file (default: its only one)")->group(kGroup);
+      ->check(any_number());
+  command.add_option("--grid-name", grid_name, "which grid of a .vdb file (default: its only one)");
 }
 
 const char* VolumeArguments::given() const {

@@ -11,7 +11,7 @@ void check_memory(std::size_t bytes, std::size_t limit, Index num_cells, double 
   if (bytes <= limit) return;
   throw OutOfMemory("the surface has more cells of size " + describe(size) + " than fit into " +
                     std::to_string(limit >> 20) + " MB (" + std::to_string(num_cells) +
-                    " so far): take larger cells (--cell) or a smaller box (--box)");
+                    " so far): take larger cells (option cell) or a smaller box (option box)");
 }
 
 }  // namespace taut::detail

@@ -66,7 +66,7 @@ void check_estimate(Index num_coarse, int level, Index d, Index k, double size, 
   if (bytes <= kEstimateSafety * static_cast<double>(limit)) return;
   throw OutOfMemory("the surface has about " + detail::describe(std::round(num_cells)) + " cells of size " +
                     detail::describe(size) + ", far more than fit into " + std::to_string(limit >> 20) +
-                    " MB: take larger cells (--cell) or a smaller box (--box)");
+                    " MB: take larger cells (option cell) or a smaller box (option box)");
 }
 
 void require(const Surface& surface, const SubdivideOptions& options, const Box& box) {
@@ -84,7 +84,7 @@ void require(const Surface& surface, const SubdivideOptions& options, const Box&
   const double across = box.extent().maxCoeff() / options.size;
   if (across > 0.25 * CellGrid::kMaxCoordinate) {
     throw OutOfMemory("cells of size " + detail::describe(options.size) + " make " + detail::describe(across) +
-                      " across the box " + describe(box) + ": take larger cells (--cell)");
+                      " across the box " + describe(box) + ": take larger cells (option cell)");
   }
 }
 

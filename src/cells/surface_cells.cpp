@@ -291,7 +291,7 @@ void SurfaceCells::resolve_tiles() {
   detail::check_memory(bytes(), growth.limit, num_cells(), grid_.size());
   if (num_cells() > growth.most_cells) {
     throw OutOfMemory("the way was not found on " + std::to_string(growth.most_cells) + " cells of size " +
-                      detail::describe(grid_.size()) + ", and no more are grown: take larger cells (--cell)");
+                      detail::describe(grid_.size()) + ", and no more are grown: take larger cells (option cell)");
   }
   Context serial = growth.context;
   serial.threads = 1;  // too little work at a time to share

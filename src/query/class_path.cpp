@@ -110,6 +110,7 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   static_cast<Geodesic&>(result) = std::move(geodesic);
   result.message =
       is_point ? "the polyline comes undone: its ends are one point, and so is the path" : std::string(result.reason);
+  result.doubts = {Doubt::rivals_not_sought};
   if (result.status == Status::ok) {
     result.candidates.push_back({result.length, result.length_error, result.locally_shortest, result.points});
   }

@@ -13,6 +13,7 @@
 #include "homotopy/shortening.hpp"
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
+#include "search/explain.hpp"
 
 namespace taut {
 namespace {
@@ -97,10 +98,12 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
     status = Status::not_converged;
     close();
   }
-  if (!found && shortening.strand().length() < setting.gap) {
-    problem = "the loop contracts to where the surface is singular, or thinner than cells can tell";
-  }
   ClosedGeodesic result = found ? *std::move(found) : unfinished(shortening, status, problem);
+  if (result.status != Status::ok) result.obstacle = {Obstacle::Kind::no_geodesic};
+  if (!found && shortening.strand().length() < setting.gap) {
+    result.obstacle = {Obstacle::Kind::contracts};
+    result.message = detail::explain(result);
+  }
   if (result.message.empty()) result.message = std::string(result.reason);
   result.from = result.points.col(0);
   result.to = result.from;
@@ -109,6 +112,7 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   result.cell = setting.cell;
   result.seconds.cells = cells_seconds;
   result.seconds.correct = watch.seconds();
+  result.doubts = {Doubt::rivals_not_sought};
   if (result.status == Status::ok) {
     result.candidates.push_back({result.length, result.length_error, result.locally_shortest, result.points});
   }

@@ -24,6 +24,7 @@ LogMapResult log_map(PathSolver& solver, const VectorIn& p, const VectorIn& q, c
   result.length = path.length;
   result.length_error = path.length_error;
   result.unique = path.unique;
+  result.tied = path.tied;
   const Index d = surface.dim();
   result.direction = result.arrival = Vector::Constant(d, std::numeric_limits<double>::quiet_NaN());
   if (path.status == Status::ok && path.length == 0) result.miss = 0;

@@ -7,7 +7,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -16,9 +15,7 @@
 #include "curve/polyline.hpp"
 #include "search/check_options.hpp"
 #include "search/corrector.hpp"
-#include "search/facet_search.hpp"
 #include "search/path_search.hpp"
-#include "surface/formula/formula_function.hpp"
 #include "surface/point_text.hpp"
 #include "taut/surface/fit.hpp"
 
@@ -56,16 +53,11 @@ Context in_turn(const Context& context, const std::shared_ptr<std::mutex>& turn,
   return shared;
 }
 
-/// May paths have to cross edges.
-bool has_kinks(const Surface& surface) {
-  const auto* formula = dynamic_cast<const detail::FormulaFunction*>(&surface.function());
-  return formula != nullptr && formula->program().has_kinks();
-}
-
 /// What is known against a fitted surface puts every path on it in doubt.
 PathResult with_doubt(PathResult result, const std::string& doubt) {
   if (doubt.empty() || result.status != Status::ok || result.from == result.to) return result;
-  result.rivals_sought = false;
+  result.doubts.add(Doubt::sheets_not_told);
+  result.unique = false;
   result.message = result.message.empty() ? doubt : result.message + "; " + doubt;
   return result;
 }
@@ -79,8 +71,7 @@ struct PathSolver::Impl {
         user(user_of),
         context(in_turn(user, turn, batch)),
         search(surface, options, context),
-        doubt(fit_doubt(surface)),
-        kinked(surface.dim() == 3 && surface.codim() == 1 && has_kinks(surface)) {}
+        doubt(fit_doubt(surface)) {}
 
   using Corrector = detail::Corrector;
 
@@ -92,24 +83,8 @@ struct PathSolver::Impl {
   Context context;  // the user's, fit for several threads
   detail::PathSearch search;
   std::string doubt;  // about the surface itself
-  bool kinked;
-  std::mutex facets_turn;
-  std::unique_ptr<detail::FacetSearch> facets;                    // made where it is first needed
-  bool facets_ready = false;                                      // for the points that are asked about now
-  std::vector<std::unique_ptr<detail::FacetSearch>> idle_facets;  // clones, of threads that are done with a pair
-  Box asked;                                                      // around the points that are asked about now
 
   [[nodiscard]] const detail::CellLevels& levels() const { return search.levels(); }
-  /// The shortest path between points of the surface, whatever it is made of.
-  [[nodiscard]] PathResult find(const Vector& p, const Vector& q, Corrector& corrector);
-  /// Of what is asked now (d x n).
-  void expect_points(const PointsIn& near);
-  /// Null where the surface is none of faces.
-  [[nodiscard]] std::unique_ptr<detail::FacetSearch> facet_worker();
-  /// What the search for surfaces of faces, edges and borders finds; nothing where it cannot be asked.
-  [[nodiscard]] std::optional<PathResult> over_faces(const Vector& p, const Vector& q);
-  /// `found` on a smooth surface, or the path along its border where that one meets it.
-  [[nodiscard]] PathResult along_border(PathResult found);
   /// body(j, corrector) for j = 0 .. n - 1 on all cores; what it throws becomes the message of result j.
   [[nodiscard]] std::vector<PathResult> for_all(Index n, bool parallel,
                                                 const std::function<PathResult(Index, Corrector&)>& body);
@@ -148,6 +123,7 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
         } catch (const Error& error) {
           result = PathResult{};
           result.message = error.what();
+          result.obstacle = {Obstacle::Kind::refused};
           if (dynamic_cast<const SingularPoint*>(&error) != nullptr) result.status = Status::rank_deficient;
         }
       }
@@ -163,83 +139,25 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
   return results;
 }
 
-void PathSolver::Impl::expect_points(const PointsIn& near) {
-  search.prepare(near);
-  if (near.cols() > 0) asked = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
-  facets_ready = false;
-}
-
-/// A graph made for all that is asked about now is shared; which thread looks for which pair changes nothing.
-std::unique_ptr<detail::FacetSearch> PathSolver::Impl::facet_worker() {
-  const std::scoped_lock lock(facets_turn);
-  if (!facets) facets = std::make_unique<detail::FacetSearch>(surface, options, context);
-  if (!facets->is_ready()) return nullptr;
-  if (!facets_ready) {
-    if (facets->prepare(levels().extent(), asked)) idle_facets.clear();
-    facets_ready = true;
-  }
-  if (idle_facets.empty()) return facets->clone();
-  std::unique_ptr<detail::FacetSearch> worker = std::move(idle_facets.back());
-  idle_facets.pop_back();
-  return worker;
-}
-
-std::optional<PathResult> PathSolver::Impl::over_faces(const Vector& p, const Vector& q) {
-  const detail::Stopwatch watch;
-  std::unique_ptr<detail::FacetSearch> worker = facet_worker();
-  if (!worker) return std::nullopt;
-  const double prepared = watch.seconds();
-  PathResult found = worker->find(p, q, levels().extent());
-  found.seconds.cells += prepared;
-  const std::scoped_lock lock(facets_turn);
-  idle_facets.push_back(std::move(worker));
-  return found;
-}
-
-PathResult PathSolver::Impl::along_border(PathResult found) {
-  const bool meets_it = found.status == Status::left_domain || (found.status == Status::ok && !found.message.empty());
-  if (surface.domain() == nullptr || !meets_it || found.from == found.to) return found;
-  std::optional<PathResult> other = over_faces(found.from, found.to);
-  if (!other || other->status != Status::ok) return found;
-  if (found.status == Status::ok && found.length <= other->length) return found;
-  return *std::move(other);
-}
-
-/// On a surface with edges their search comes first: the others would follow one face beyond its end, or go round. On a
-/// smooth one that is cut, only where the path meets the border.
-PathResult PathSolver::Impl::find(const Vector& p, const Vector& q, Corrector& corrector) {
-  if (!kinked || p == q) return along_border(search.find(p, q, corrector));
-  std::optional<PathResult> found = over_faces(p, q);
-  // There are ways, but none was made a geodesic: the search for smooth surfaces would not do better.
-  if (found && (found->status == Status::ok || found->marched > 0)) return *std::move(found);
-  PathResult other = search.find(p, q, corrector);
-  if (other.status == Status::ok && other.message.empty() && other.corrected) {
-    other.message = found ? fmt::format("a shorter path may exist: {}", found->message)
-                          : "a shorter path may exist: over the edges of this surface it is looked for by Newton's "
-                            "method on the convergent march only";
-    other.rivals_sought = false;
-  }
-  return other;
-}
-
 PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   Impl& impl = *impl_;
   detail::check_point(impl.surface, p, "start");
   detail::check_point(impl.surface, q, "end");
   const detail::Stopwatch watch;
-  impl.expect_points(detail::chord(p, q));
+  impl.search.prepare(detail::chord(p, q));
   const double box_seconds = watch.seconds();
   Impl::Corrector corrector(impl.surface, impl.options, impl.context);
-  PathResult result = with_doubt(
-      impl.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector), impl.doubt);
+  PathResult result =
+      with_doubt(impl.search.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector),
+                 impl.doubt);
   result.seconds.cells += box_seconds;
   return result;
 }
 
 void PathSolver::expect(const PointsIn& near, Index num_pairs) {
   Impl& impl = *impl_;
-  impl.expect_points(finite_columns(near, impl.surface.dim()));
-  if (!impl.kinked) impl.search.tabulate(num_pairs);
+  impl.search.prepare(finite_columns(near, impl.surface.dim()));
+  impl.search.tabulate(num_pairs);
 }
 
 std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const PointsIn& to) {
@@ -254,8 +172,8 @@ std::vector<PathResult> PathSolver::solve_pairs(const PointsIn& from, const Poin
   return impl.for_all(from.cols(), true, [&](Index j, Impl::Corrector& corrector) {
     detail::check_point(impl.surface, from.col(j), "start");
     detail::check_point(impl.surface, to.col(j), "end");
-    return impl.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
-                     corrector);
+    return impl.search.find(impl.levels().on_surface(from.col(j), "start"), impl.levels().on_surface(to.col(j), "end"),
+                            corrector);
   });
 }
 
@@ -264,15 +182,16 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   detail::check_point(impl.surface, p, "start");
   Points all(p.size(), 1 + (targets.rows() == p.size() ? targets.cols() : 0));
   all << p, targets.leftCols(all.cols() - 1);
-  impl.expect_points(finite_columns(all, impl.surface.dim()));
+  impl.search.prepare(finite_columns(all, impl.surface.dim()));
   const Vector from = impl.levels().on_surface(p, "start");
   const auto target = [&](Index j) {
     detail::check_point(impl.surface, targets.col(j), "end");
     return impl.levels().on_surface(targets.col(j), "end");
   };
-  if (!impl.levels().exist() || impl.levels().lazy() || impl.kinked) {
-    return impl.for_all(targets.cols(), true,
-                        [&](Index j, Impl::Corrector& corrector) { return impl.find(from, target(j), corrector); });
+  if (!impl.levels().exist() || impl.levels().lazy() || impl.search.has_kinks()) {
+    return impl.for_all(targets.cols(), true, [&](Index j, Impl::Corrector& corrector) {
+      return impl.search.find(from, target(j), corrector);
+    });
   }
   PathSeconds shared;
   detail::Stopwatch watch;
@@ -294,7 +213,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   std::vector<PathResult> results =
       impl.for_all(targets.cols(), !ground.cells->is_lazy(), [&](Index j, Impl::Corrector& corrector) {
         const Vector to = target(j);
-        return impl.along_border(impl.search.find(from, to, corrector, starts_to(to)));
+        return impl.search.find(from, to, corrector, starts_to(to));
       });
   const auto on_shared_cells = std::ranges::find_if(results, [&](const PathResult& result) {
     return result.grid_path.cols() > 0 && result.cell == ground.cells->grid().size();

@@ -83,7 +83,7 @@ void grow_patches(const Surface& surface, const SummaryOptions& options, detail:
   const bool sampled = surface.samples() != nullptr && surface.samples()->size() > 0;
   const Points& seeds = sampled ? surface.samples()->points : options.seeds;
   if (seeds.cols() == 0) {
-    throw InvalidArgument("Algorithm II grows cells from points of the surface: give it some (--samples FILE)");
+    throw InvalidArgument("Algorithm II grows cells from points of the surface: give it some (option samples)");
   }
   levels.prepare(seeds);
   const CellGrid grid =

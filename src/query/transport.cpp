@@ -56,6 +56,7 @@ TransportResult transport_along(PathSolver& solver, const PointsIn& stations, co
     result.to = path.to;
     result.length += path.length;
     result.unique = result.unique && path.unique;
+    result.tied = result.tied || path.tied;
     const std::string part = parts > 1 ? fmt::format("part {} of {}: ", i + 1, parts) : "";
     if (!path.message.empty() && result.message.empty()) result.message = part + path.message;
     if (path.status != Status::ok) {

@@ -77,6 +77,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
   whole.to = whole.legs.back().to;
   whole.status = Status::ok;
   whole.locally_shortest = true;
+  whole.unique = true;
   whole.index = 0;
   whole.marched = 0;
   bool complete = true;
@@ -92,7 +93,8 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.locally_shortest = whole.locally_shortest && leg.locally_shortest;
     whole.index = whole.index && leg.index ? std::optional(*whole.index + *leg.index) : std::nullopt;
     whole.unique = whole.unique && leg.unique;
-    whole.rivals_sought = whole.rivals_sought && leg.rivals_sought;
+    whole.tied = whole.tied || leg.tied;
+    whole.doubts.add(leg.doubts);
     whole.residual.surface = std::max(whole.residual.surface, leg.residual.surface);
     whole.residual.geodesic_curvature = std::max(whole.residual.geodesic_curvature, leg.residual.geodesic_curvature);
     whole.num_iterations += leg.num_iterations;

@@ -143,8 +143,8 @@ std::shared_ptr<SurfaceCells> CellLevels::grown(double h, CellCounts* counts) co
   }
   if (seeds_.cols() == 0) {
     throw InvalidArgument(
-        "Algorithm II grows cells from points of the surface: give it some (--samples FILE), or "
-        "subdivide");
+        "Algorithm II grows cells from points of the surface: give it some (option samples), or "
+        "subdivide (option grid)");
   }
   return std::make_shared<SurfaceCells>(surface_, grow(surface_.with_box(box()), seeds_, options, context_), context_);
 }

@@ -45,7 +45,8 @@ void check_cells(const Surface& surface, const PathOptions& options) {
   if (!asks || fits) return;
   throw InvalidArgument(fmt::format(
       "in {} dimensions (more than {}) paths are found without cells, or on cells that grow where the march "
-      "goes: ask for --grid grow with --march axis and no envelope, or for neither",
+      "goes: ask for those (option grid grow) with the march along axes (option march axis) and no envelope, or for "
+      "neither",
       surface.dim(), CellLevels::kMostDimensions));
 }
 

@@ -1,8 +1,5 @@
 #include "search/corrector.hpp"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,39 +13,13 @@
 #include "homotopy/shortening.hpp"
 #include "search/candidates.hpp"
 #include "search/contender.hpp"
+#include "search/correction_rules.hpp"
 #include "search/flow_options.hpp"
 #include "search/splices.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {
 namespace {
-
-/// Newton's method leads to a path that is hardly longer than its start; where it is, the curve has jumped somewhere,
-/// or the start cut through the surface: the flow, which does not jump, tells.
-constexpr double kMostGrowth = 1.1;
-/// Starts are corrected as long as they may turn out the shortest, their lengths being as wrong as is to be expected,
-/// or this many times as wrong as those of the ways corrected before.
-constexpr double kErrorFactor = 3;
-/// Several starts are first corrected to this tolerance, to see which may be the shortest.
-constexpr double kRoughTolerance = 1e-3;
-/// Splices of those are tried that seem longer than the shortest by no more than this part.
-constexpr double kSpliced = 0.01;
-/// A start from which Newton's method fails is brought to rest first, where another start has led to a geodesic if it
-/// promises one that is not longer by more than this part. So many starts, ...
-constexpr double kPromise = 0.01;
-constexpr int kMostGentle = 4;
-/// ... and so much work for one set of starts: nodes at which the flow evaluates F (paths over a scan at 300 cells take
-/// 10,000 to 100,000 of them, 0.1 to 0.5 s), ...
-constexpr Index kMostGentleNodes = 400'000;
-/// ... and points projected in shortening, in all and at a time: 96 segments come to rest within some 300 steps, 30,000
-/// points; on noise of the size of the segments they never do.
-constexpr Index kMostGentleProjected = 100'000;
-constexpr Index kMostGentlePoints = 5'000;
-/// Segments of shortening, and how far from the surface the start may be, in its length.
-constexpr double kGentleSegments = 96;
-constexpr double kGentleOff = 0.1;
-/// Points of more coordinates are not printed.
-constexpr Index kMostPrinted = 16;
 
 /// A geodesic, be it one through a singular point.
 bool is_geodesic(const Geodesic& geodesic) {
@@ -96,7 +67,9 @@ class Hope {
   [[nodiscard]] bool is_lost(double length) const { return length > shortest_ * (1 + error_); }
   void found(double length) { shortest_ = std::min(shortest_, length); }
   /// A start that promised one length has led to another.
-  void doubt(double promised, double length) { error_ = std::max(error_, kErrorFactor * (promised / length - 1)); }
+  void doubt(double promised, double length) {
+    error_ = std::max(error_, kCorrectionRules.error_factor * (promised / length - 1));
+  }
 
  private:
   double shortest_ = std::numeric_limits<double>::infinity();
@@ -110,7 +83,9 @@ Corrector::Corrector(const Surface& surface, const PathOptions& options, const C
 
 NewtonSolver& Corrector::rough(std::size_t worker) {
   std::optional<NewtonSolver>& solver = rough_.at(worker);
-  if (!solver) solver.emplace(surface_, NewtonOptions{.tolerance = std::max(kRoughTolerance, options_.tolerance)});
+  if (!solver)
+    solver.emplace(surface_,
+                   NewtonOptions{.tolerance = std::max(kCorrectionRules.rough_tolerance, options_.tolerance)});
   return *solver;
 }
 
@@ -122,7 +97,7 @@ NewtonSolver& Corrector::newton(std::size_t worker) {
 
 template <class Hopeful, class Work, class Take>
 void Corrector::in_waves(std::size_t n, const Hopeful& hopeful, const Work& work, const Take& take) const {
-  const auto at_a_time = std::min(kMostAtATime, static_cast<std::size_t>(num_threads(context_)));
+  const auto at_a_time = std::min(CorrectionRules::kAtATime, static_cast<std::size_t>(num_threads(context_)));
   for (std::size_t first = 0; first < n && hopeful(first);) {
     std::size_t last = std::min(n, first + at_a_time);
     while (!hopeful(last - 1)) --last;
@@ -144,21 +119,21 @@ std::optional<NewtonResult> Corrector::correct_gently(const Points& start, const
     if (!is_geodesic(geodesic)) return std::nullopt;
     return geodesic;
   };
-  if (num_gentle_nodes_ < kMostGentleNodes) {
-    const FlowOptions options{.lattice = lattice, .max_evaluated = kMostGentleNodes - num_gentle_nodes_};
+  if (num_gentle_nodes_ < kGentleRules.most_nodes) {
+    const FlowOptions options{.lattice = lattice, .max_evaluated = kGentleRules.most_nodes - num_gentle_nodes_};
     const FlowResult flowed = correct_flow(surface_, start, options, context_);
     num_gentle_nodes_ += flowed.summary.num_evaluated;
     if (flowed.status == Status::ok) {
       if (auto geodesic = solve(flowed.points)) return geodesic;
     }
   }
-  if (!maker_) maker_.emplace(surface_, kMostGentlePoints);
+  if (!maker_) maker_.emplace(surface_, kGentleRules.most_points);
   const Index left = last_gentle_projected_ - maker_->num_projected();
   if (left <= 0) return std::nullopt;
   const double length = polyline_length(start);
-  const double gap = length / kGentleSegments;
+  const double gap = length / kGentleRules.segments;
   try {
-    Shortening shortening(*maker_, maker_->make(start, false, gap, kGentleOff * length), gap, left);
+    Shortening shortening(*maker_, maker_->make(start, false, gap, kGentleRules.off * length), gap, left);
     for (const double settled : {0.1, 1e-3}) {
       const Shortening::Outcome outcome = shortening.run(settled * gap, context_);
       if (auto geodesic = solve(shortening.strand().polyline())) return geodesic;
@@ -170,13 +145,10 @@ std::optional<NewtonResult> Corrector::correct_gently(const Points& start, const
   return std::nullopt;
 }
 
-void Corrector::explain(Corrected& corrected) const {
-  const Geodesic& geodesic = corrected.geodesic;
-  corrected.message = std::string(geodesic.reason);
-  if (geodesic.status == Status::rank_deficient && geodesic.points.cols() > 0) {
-    const Vector at = weakest_point(surface_, geodesic.points);
-    if (at.size() <= kMostPrinted) corrected.message += fmt::format(", near ({:.4g})", fmt::join(at, ", "));
-  }
+Obstacle Corrector::obstacle_of(const Geodesic& geodesic) const {
+  if (geodesic.status == Status::ok) return {};
+  if (geodesic.status != Status::rank_deficient || geodesic.points.cols() == 0) return {Obstacle::Kind::no_geodesic};
+  return {Obstacle::Kind::no_geodesic, weakest_point(surface_, geodesic.points)};
 }
 
 Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice& lattice, std::size_t worker) {
@@ -203,12 +175,12 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
       geodesic.status = Status::ok;
       break;
   }
-  explain(corrected);
+  corrected.obstacle = obstacle_of(geodesic);
   const bool may_have_jumped = options_.method == CorrectionMethod::newton;
-  if (may_have_jumped && geodesic.status == Status::ok && geodesic.length > kMostGrowth * start_length) {
+  if (may_have_jumped && geodesic.status == Status::ok &&
+      geodesic.length > kCorrectionRules.most_growth * start_length) {
     geodesic.status = Status::not_converged;
-    corrected.message = fmt::format("the corrected path is longer ({:.6g}) than the one on the cells ({:.6g})",
-                                    geodesic.length, start_length);
+    corrected.obstacle = {Obstacle::Kind::jumped, {}, start_length};
   }
   return corrected;
 }
@@ -248,7 +220,7 @@ std::vector<Corrector::Choice> Corrector::choose(const Starts& given) {
     known.push_back(contender.geodesic);
     shortest = std::min(shortest, contender.at_most());
   }
-  const std::vector<StartPath> spliced = splices(surface_, known, (1 + kSpliced) * shortest);
+  const std::vector<StartPath> spliced = splices(surface_, known, (1 + kCorrectionRules.spliced) * shortest);
   geodesics.resize(std::max(geodesics.size(), spliced.size()));
   in_waves(
       spliced.size(), [](std::size_t) { return true; }, correct_roughly(spliced),
@@ -296,30 +268,31 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   // A start from which nothing came, though it is as short as what was found, may lead to the shortest path. Where
   // nothing was found, finer cells are the better help.
   if (options_.method != CorrectionMethod::newton) failed.clear();
-  int tries = kMostGentle;
+  int tries = kGentleRules.most;
   num_gentle_nodes_ = 0;
-  last_gentle_projected_ = (maker_ ? maker_->num_projected() : 0) + kMostGentleProjected;
+  last_gentle_projected_ = (maker_ ? maker_->num_projected() : 0) + kGentleRules.most_projected;
   for (const Choice* choice : failed) {
     const bool found = is_geodesic(best->geodesic);
-    const bool promises = tries-- > 0 && polyline_length(choice->start) <= (1 + kPromise) * best->geodesic.length;
+    const bool promises =
+        tries-- > 0 && polyline_length(choice->start) <= (1 + kGentleRules.promise) * best->geodesic.length;
     if (found ? !promises : !last) break;
     std::optional<NewtonResult> gently = correct_gently(choice->start, lattice);
     if (!gently) continue;
     if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));
     if (!is_better(*gently, best->geodesic)) continue;
     best = Corrected{*std::move(gently), {}, choice->start, {}};
-    explain(*best);
+    best->obstacle = obstacle_of(best->geodesic);
   }
   static_cast<Geodesic&>(result) = std::move(best->geodesic);
-  result.message = std::move(best->message);
+  result.obstacle = std::move(best->obstacle);
   result.flow = best->flow;
   result.grid_path = std::move(best->start);
   result.candidates = std::move(candidates);
-  result.unique = first_is_unique(result.candidates, options_.tolerance);
+  result.tied = !first_is_unique(result.candidates, options_.tolerance);
   const Points& way = starts.paths.front().points;
   if (result.status == Status::ok && !joins(result, way.leftCols(1), way.rightCols(1))) {
     result.status = Status::not_converged;
-    result.message = "the curve found does not lead from one end to the other; please report this";
+    result.obstacle = {Obstacle::Kind::loose_ends};
   }
   result.seconds.correct += watch.seconds();
   result.corrected = options_.method != CorrectionMethod::grid;

@@ -3,10 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "homotopy/strand.hpp"
+#include "search/correction_rules.hpp"
 #include "search/start_finder.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/curve/spectral_curve.hpp"
@@ -21,22 +21,22 @@ class Corrector {
   /// On the threads of `context`: several starts are corrected side by side.
   Corrector(const Surface& surface, const PathOptions& options, const Context& context);
 
-  /// Corrects every start that may lead to the shortest path. The best one becomes the Geodesic part of `result`, the
-  /// others its candidates. False when the outcome is in doubt: nothing converged, or a start that promised a clearly
-  /// shorter path has not led to one. `last`: no other starts will be tried.
+  /// Corrects every start that may lead to the shortest path. The best one becomes the Geodesic part of `result`, with
+  /// its obstacle, the others its candidates. False when the outcome is in doubt: nothing converged, or a start that
+  /// promised a clearly shorter path has not led to one. `last`: no other starts will be tried.
   [[nodiscard]] bool correct(PathResult& result, const Starts& starts, bool last);
 
  private:
   struct Corrected {
     Geodesic geodesic;
-    std::string message;
+    Obstacle obstacle;  // where it is none
     Points start;
     std::optional<FlowSummary> flow;
   };
 
   [[nodiscard]] std::optional<NewtonResult> correct_gently(const Points& start, const FlowLattice& lattice);
-  /// Fills the message.
-  void explain(Corrected& corrected) const;
+  /// What keeps a curve from being a geodesic, and where.
+  [[nodiscard]] Obstacle obstacle_of(const Geodesic& geodesic) const;
   /// A start to be corrected to the end.
   struct Choice {
     double length;  // about that of the geodesic; where it is known to a few digits, the least that it may be
@@ -56,9 +56,7 @@ class Corrector {
   [[nodiscard]] NewtonSolver& rough(std::size_t worker);
   [[nodiscard]] NewtonSolver& newton(std::size_t worker);
 
-  /// Of more at a time, most would be corrected in vain.
-  static constexpr std::size_t kMostAtATime = 4;
-  using Solvers = std::array<std::optional<NewtonSolver>, kMostAtATime>;
+  using Solvers = std::array<std::optional<NewtonSolver>, CorrectionRules::kAtATime>;
 
   const Surface& surface_;
   const PathOptions& options_;

@@ -147,7 +147,13 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
     return false;
   }
   // Of a way that was not settled it is not known whether it is as short.
-  result.rivals_sought = unsolved > (1 + kWaySlack) * best;
+  result.doubts.remove(Doubt::start_failed);
+  result.doubts.remove(Doubt::rivals_not_sought);
+  if (unsolved < best) {
+    result.doubts.add(Doubt::start_failed);
+  } else if (unsolved <= (1 + kWaySlack) * best) {
+    result.doubts.add(Doubt::rivals_not_sought);
+  }
   // A way that promised a shorter path.
   if (unsolved < best) {
     result.message =
@@ -238,6 +244,7 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
     }
     if (round + 1 == kMostGraphs) {
       result.message = "a shorter path may exist: it was not looked for everywhere";
+      result.doubts.add(Doubt::budget_spent);
       break;
     }
     if (holds && needed.extent().maxCoeff() > 0.7 * current->box().extent().maxCoeff()) break;
@@ -286,7 +293,7 @@ void FacetSearch::deliver(const std::vector<Found>& found, PathResult& result) c
     add_candidate(result.candidates, {one.chain.length, one.chain.error + 4e-16 * one.chain.length,
                                       one.chain.locally_shortest, points_of(one.chain)});
   }
-  result.unique = first_is_unique(result.candidates, options_.tolerance);
+  result.tied = !first_is_unique(result.candidates, options_.tolerance);
   for (std::size_t i = 0; i < best.arcs.size(); ++i) {
     const ChainArc& arc = best.arcs[i];
     PathPiece piece;

@@ -1,25 +1,201 @@
+// The shortest path, by a ladder of rungs from cheap to dear. A rung is climbed where it can lift a doubt that is left;
+// what it finds replaces the best path if it is better, and it says which doubts it leaves itself. Every rung ends by a
+// count of cells (ladder_rules.hpp), of walked steps or of corrections, so the search does.
+//
+// clang-format off
+//   rung    can lift                                    finds starts by                     leaves, as a doubt
+//   faces   no path yet, on a surface with edges        ways over a graph of faces          start_failed, budget_spent
+//   table   no path yet                                 distances between landmarks         start_failed, coarse_cells,
+//                                                                                           sharp_bends
+//   fields  no path yet; start_failed, once;            distances marched from both ends,   the same
+//           sharp_bends that the table has left         on cells of h, h/2, h/4, ...
+//   walks   no path yet, before cells get dear, and     steps from both ends, random ones   sheets_not_told,
+//           where there are none                        where those are stuck               cells_spent, random_search
+//   closer  coarse_cells, sharp_bends                   this search, in the part of the     those of that search
+//                                                       box that shorter paths can visit
+//   wider   shorter paths could leave the box, or the   this search, in windows 2, 4, ...   beyond_window, and those
+//           points lie apart in it, and the surface     times as wide                       of that search
+//           goes on
+//   border  any doubt, or the path leaves the domain    ways over a graph of the one face   start_failed, budget_spent
+//                                                       and its border
+// clang-format on
+//
+// Where there are two ways to the same end the cheaper one comes first: walks, which cost about as much as two million
+// cells, before finer cells than that.
 #include "search/path_search.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <memory>
 #include <utility>
 
+#include "curve/polyline.hpp"
+#include "search/explain.hpp"
+#include "search/find_obstacle.hpp"
+#include "search/ladder_rules.hpp"
 #include "search/shorter_paths.hpp"
-#include "surface/point_text.hpp"
-#include "taut/cells/find_box.hpp"
+#include "surface/formula/formula_function.hpp"
 
 namespace taut::detail {
 namespace {
 
-constexpr int kMostDoublings = 6;
-/// Cells of a given size get ever more: so many to see whether a path is the shortest, and whether there is one.
-constexpr Index kMostCellsForShorter = 6'000'000;
-constexpr Index kMostCellsForAny = 500'000;
+constexpr Rung kLadder[] = {Rung::faces,  Rung::table, Rung::fields, Rung::walks,
+                            Rung::closer, Rung::wider, Rung::border};
+
+/// May paths on the surface have to cross edges.
+bool has_edges(const Surface& surface) {
+  if (surface.dim() != 3 || surface.codim() != 1) return false;
+  const auto* formula = dynamic_cast<const FormulaFunction*>(&surface.function());
+  return formula != nullptr && formula->program().has_kinks();
+}
+
+PathResult standing_still(const Vector& p, double cell) {
+  PathResult result;
+  result.from = result.to = p;
+  result.status = Status::ok;
+  result.locally_shortest = true;
+  result.index = 0;
+  result.points = chord(p, p);
+  result.grid_path = result.points;
+  result.cell = cell;
+  result.unique = true;
+  return result;
+}
 
 }  // namespace
 
-/// The first one, made wider where the surface has no end.
+PathSearch::PathSearch(Surface surface, const PathOptions& options, const Context& context, Scope scope)
+    : surface_(std::move(surface)),
+      options_(options),
+      context_(context),
+      scope_(scope),
+      kinked_(scope == Scope::whole && has_edges(surface_)),
+      finder_(surface_, options_, context_),
+      faces_(surface_, options_, context_) {}
+
+void PathSearch::prepare(const PointsIn& near) {
+  if (finder_.prepare(near) || levels().grows_from_ends()) wider_.clear();
+  points_ = near;
+  faces_.expect(near);
+}
+
+void PathSearch::tabulate(Index num_pairs) {
+  if (!kinked_) finder_.tabulate(num_pairs);
+}
+
+PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& corrector, std::optional<Starts> first) const {
+  if (p == q) return standing_still(p, levels().size(0));
+  Inquiry now(p, q, std::move(first));
+  const auto next = [&] { return std::ranges::find_if(kLadder, [&](Rung rung) { return can_help(rung, now); }); };
+  for (const Rung* rung = next(); rung != std::end(kLadder); rung = next()) {
+    climb(*rung, now, corrector);
+    now.set_tried(*rung);
+    now.report(*rung);
+  }
+  return conclude(std::move(now));
+}
+
+/// Could a rung lift a doubt that is left, for a price that is worth it.
+bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
+  if (now.settled) return false;
+  const bool whole = scope_ == Scope::whole;
+  switch (rung) {
+    case Rung::faces: return kinked_ && !now.tried(rung);
+    case Rung::table: return finder_.has_table() && !now.first && !now.tried(rung);
+    case Rung::fields: {
+      // On which side of a spike a way begins no landmark tells.
+      const bool past_spikes = now.doubts.has(Doubt::sharp_bends) && !now.marched;
+      const bool wanted = !now.best || now.doubts.has(Doubt::start_failed) || past_spikes;
+      return levels().exist() && now.level < num_levels() && wanted && is_affordable(now);
+    }
+    case Rung::walks: return !now.best && !now.tried(rung) && (scope_ != Scope::window || !levels().exist());
+    case Rung::closer:
+      return scope_ != Scope::part && !marches_between_centres(options_) && now.has_path() && !now.tried(rung) &&
+             now.doubts.has_any({Doubt::coarse_cells, Doubt::sharp_bends}) && has_smaller_part(*now.best);
+    case Rung::wider:
+      return whole && levels().endless() && !now.window_shut &&
+             (now.has_path() ? !have_room(*now.best, now.doublings) : now.is_apart());
+    case Rung::border: {
+      const bool met = now.best && (now.best->status == Status::left_domain || (now.has_path() && now.doubts.any()));
+      return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
+    }
+  }
+  return false;
+}
+
+void PathSearch::climb(Rung rung, Inquiry& now, Corrector& corrector) const {
+  switch (rung) {
+    case Rung::faces: return go_over_faces(now);
+    case Rung::table: return ask_table(now, corrector);
+    case Rung::fields: return march_fields(now, corrector);
+    case Rung::walks: return walk(now, corrector);
+    case Rung::closer: return look_closer(now, corrector);
+    case Rung::wider: return look_wider(now, corrector);
+    case Rung::border: return go_along_border(now);
+  }
+}
+
+PathResult PathSearch::conclude(Inquiry now) const {
+  if (!now.best && now.fallback) now.best = std::move(now.fallback);
+  if (!now.best) {
+    now.give_up(Status::not_converged, Obstacle::Kind::no_way);
+    const bool walks = options_.method != CorrectionMethod::grid;
+    now.best->obstacle =
+        find_obstacle(surface_, now.from(), now.to(), {now.blank.cell, now.barrier, levels().mostly_resolved(), walks});
+  }
+  PathResult result = *std::move(now.best);
+  result.seconds = now.blank.seconds;
+  result.rungs = std::move(now.rungs);
+  result.doubts = now.doubts;
+  if (result.status == Status::ok && result.corrected && !now.settled) result.doubts.add(now.over_edges);
+  result.unique = result.status == Status::ok && result.corrected && !result.tied && !result.doubts.any();
+  if (result.doubts.has(Doubt::beyond_window)) result.window = now.window;
+  if (result.message.empty()) result.message = explain(result);
+  return result;
+}
+
+/// The paper's march goes wherever cells hang together: where it finds no way, finer cells would have none either. It
+/// keeps to the cells that were asked for.
+int PathSearch::num_levels() const { return marches_between_centres(options_) ? 1 : levels().num_levels(); }
+
+/// Where the last cells led nowhere: may the next be made, and is there nothing cheaper to try before.
+bool PathSearch::is_affordable(const Inquiry& now) const {
+  if (!now.blocked || now.best) return true;
+  if (scope_ == Scope::window) return now.next_cells <= kLadderRules.most_cells_in_window;
+  const bool fitted = surface_.samples() != nullptr;
+  if (now.next_cells > (fitted ? kLadderRules.most_fitted_cells : kLadderRules.most_cells)) return false;
+  return now.tried(Rung::walks) || now.next_cells <= kLadderRules.most_cells_before_walks;
+}
+
+/// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest. Sharp
+/// bends alone are no reason where finer cells for the part of the box that matters would be hardly finer.
+Doubts PathSearch::doubts_of_cells(const PathResult& found, const Starts& starts, int level) const {
+  if (!found.corrected) return {};
+  if (!levels().resolved()) return {Doubt::coarse_cells};
+  if (found.status != Status::ok) return {};
+  const bool local = box_of_shorter_paths(found.from, found.to, found.length).extent().maxCoeff() <
+                     kLadderRules.local_part * levels().box().extent().maxCoeff();
+  const double marched = starts.paths.front().length;
+  const bool mismarched = std::abs(marched - found.length) > kLadderRules.mismarched * found.length;
+  if ((local || mismarched) && finder_.bends_sharply(level, found.points)) return {Doubt::sharp_bends};
+  return {};
+}
+
+/// The part of the box that shorter paths can visit: the ellipsoid about the ends whose points are no farther from both
+/// than the path is long.
+Box PathSearch::part_of_shorter(const PathResult& found) const {
+  return intersection(box_of_shorter_paths(found.from, found.to, found.length), levels().box());
+}
+
+/// Is that part so much smaller than the box that its cells will be finer. Where the size was asked for, cells of the
+/// size that would be chosen do, too.
+bool PathSearch::has_smaller_part(const PathResult& found) const {
+  return options_.cell > 0 ||
+         part_of_shorter(found).extent().maxCoeff() <= kLadderRules.smaller_part * levels().box().extent().maxCoeff();
+}
+
+/// The first window, made wider where the surface has no end.
 Box PathSearch::window(int doublings) const {
   const Box& first = levels().extent().window;
   const Vector middle = (first.lower + first.upper) / 2;
@@ -37,56 +213,10 @@ bool PathSearch::have_room(const PathResult& found, int doublings) const {
       .all();
 }
 
-/// A search that looks through that window.
-const BoxSearch& PathSearch::through(int doublings) const {
-  const std::lock_guard lock(mutex_);
-  const auto at = static_cast<std::size_t>(doublings) - 1;
-  if (wider_.size() <= at) wider_.resize(at + 1);
-  if (!wider_[at]) {
-    const SurfaceExtent seen = through_window(surface_, levels().extent(), window(doublings), context_);
-    wider_[at] = std::make_unique<BoxSearch>(surface_.with_box(seen.box), options_, context_, BoxSearch::Look::farther);
-    wider_[at]->prepare(levels().grows_from_ends() ? points_ : Points(surface_.dim(), 0));
-  }
-  return *wider_[at];
-}
-
-/// Where the surface goes on beyond the box, shorter ways may, too, or the only one: those are sought through windows
-/// wide enough.
-PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& corrector, std::optional<Starts> first) const {
-  PathResult found = near_.find(p, q, corrector, std::move(first));
-  Box seen = levels().box();
-  for (int doublings = 0; levels().endless();) {
-    const bool way = found.status == Status::ok;
-    if (way ? have_room(found, doublings) : !found.proved_apart) break;
-    const int before = doublings++;
-    while (way && doublings < kMostDoublings && !have_room(found, doublings)) ++doublings;
-    if (doublings <= kMostDoublings && is_affordable(found, doublings - before)) {
-      try {
-        const BoxSearch& farther = through(doublings);
-        PathResult again = farther.find(p, q, corrector);
-        const bool ahead = way ? again.status == Status::ok && again.length <= (1 + options_.tolerance) * found.length
-                               : again.status == Status::ok || again.proved_apart;
-        add_seconds(found, again);
-        if (ahead) {
-          found = std::move(again);
-          seen = farther.levels().box();
-          continue;
-        }
-        found.seconds = again.seconds;
-      } catch (const OutOfMemory&) {  // what was found is not lost
-      }
-    }
-    found.rivals_sought = false;
-    found.message = way ? fmt::format("a shorter path may exist: the surface goes on beyond {}", text_of(seen))
-                        : fmt::format("{} within {}, beyond which it goes on", kApart, text_of(seen));
-    break;
-  }
-  return found;
-}
-
-bool PathSearch::is_affordable(const PathResult& found, int doublings) const {
+/// Cells of a given size get ever more.
+bool PathSearch::is_window_affordable(const PathResult& found, int doublings) const {
   if (options_.cell == 0) return true;
-  const Index most = found.status == Status::ok ? kMostCellsForShorter : kMostCellsForAny;
+  const Index most = found.status == Status::ok ? kLadderRules.most_cells_for_shorter : kLadderRules.most_cells_for_any;
   return found.num_cells <= most >> (doublings * (surface_.dim() - surface_.codim()));
 }
 

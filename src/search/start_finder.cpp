@@ -14,43 +14,13 @@
 #include "search/march_check.hpp"
 #include "search/normal_turns.hpp"
 #include "search/side_steps.hpp"
+#include "search/start_rules.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/march/march.hpp"
 #include "walk/find_ways.hpp"
 
 namespace taut::detail {
 namespace {
-
-constexpr Index kMostRivals = 16;
-constexpr Index kMostWaysRound = 64;
-/// Over rims, places close to each other lead to different geodesics: StartPathOptions::spread.
-constexpr double kSpreadOverBends = 0.04;
-
-// The table: its cells may be as coarse as marched distances bear, its landmarks as few as tell ways apart.
-constexpr double kTableTurn = 0.85;  // most that the normal turns from one of its cells to the next, radians
-constexpr double kTurnQuantile = 0.95;
-constexpr double kRefinement = 1.2;  // the next finer size
-constexpr double kFewestCells = 400;
-constexpr double kFewestLandmarks = 320;
-constexpr double kLandmarksPerTurn2 = 0.1;
-// How wrong it is, is measured against finer cells, and on a few ways. Where it is too wrong, finer cells are taken.
-constexpr double kCheckedPart = 0.99;
-constexpr double kMostOff = 0.03;
-constexpr Index kCalibrationWays = 48;
-constexpr double kCalibrationTolerance = 1e-3;
-constexpr double kSafety = 2;
-constexpr double kLeastTableError = 0.03;
-constexpr double kMostWrong = 0.03;
-constexpr double kDoubtSafety = 3;
-constexpr double kLeastTableDoubt = 0.004;
-constexpr double kMostTableDoubt = 0.03;
-/// Where the table bounds the distance, marches keep to the cells that paths no longer than the rivals run through, and
-/// so many more.
-constexpr double kMarginCells = 2;
-/// Where the fields know no way, none longer than so many diagonals of the box is sought.
-constexpr double kMostDiagonals = 2;
-/// A table is made when it costs less than this part of marching from both ends of each pair.
-constexpr double kWorthwhile = 0.2;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -104,46 +74,47 @@ void StartFinder::tabulate(Index num_pairs) {
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
-  const double most_work = kWorthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
+  const double most_work = kTableRules.worthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
   std::optional<MarchCheck> check;
   // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
-  for (double coarser = std::max(1.0, std::sqrt(num_fine / kFewestCells)); !table_; coarser /= kRefinement) {
+  for (double coarser = std::max(1.0, std::sqrt(num_fine / kTableRules.fewest_cells)); !table_;
+       coarser /= kTableRules.refinement) {
     const bool finest = coarser <= 1;
     std::shared_ptr<SurfaceCells> cells = levels_.subdivided(std::max(1.0, coarser) * levels_.size(0));
     if (!cells) return;
     NormalTurns turns(*cells, context_);
-    const double turn = turns.quantile(kTurnQuantile);
-    if ((turn > kTableTurn || !turns.make_a_sheet()) && !finest) continue;
+    const double turn = turns.quantile(kTableRules.turn_quantile);
+    if ((turn > kTableRules.turn || !turns.make_a_sheet()) && !finest) continue;
     if (!turns.make_a_sheet()) return;
     if (!finest) {
       if (!check) check.emplace(surface_, *fine, context_);
-      if (check->quantile(*cells, kCheckedPart) > kMostOff) continue;
+      if (check->quantile(*cells, kTableRules.checked_part) > kTableRules.wrong) continue;
     }
     const auto num_cells = static_cast<double>(cells->num_valid());
-    const double num_landmarks =
-        std::clamp(kLandmarksPerTurn2 * num_cells * turn * turn, std::min(kFewestLandmarks, num_cells), num_cells);
+    const double num_landmarks = std::clamp(kTableRules.landmarks_per_turn2 * num_cells * turn * turn,
+                                            std::min(kTableRules.fewest_landmarks, num_cells), num_cells);
     if (num_landmarks * num_cells > most_work) return;
     DistanceTable table(surface_, std::move(*cells), static_cast<Index>(num_landmarks), context_);
     const TableError error = measure_error(table);
     const double wrong = std::max(error.too_long, error.too_short);
-    if (wrong > kMostWrong && !finest) continue;
+    if (wrong > kTableRules.wrong && !finest) continue;
     table_ = std::move(table);
-    table_error_ = std::clamp(kSafety * wrong, kLeastTableError, kExcess);
-    table_doubt_ = std::clamp(kDoubtSafety * error.too_short, kLeastTableDoubt, kMostTableDoubt);
+    table_error_ = std::clamp(kTableRules.safety * wrong, kTableRules.wrong, kRivalRules.excess);
+    table_doubt_ = std::clamp(kTableRules.doubt_safety * error.too_short, kTableRules.least_doubt, kTableRules.wrong);
   }
 }
 
 /// How wrong a table is: the worst of some ways between landmarks far apart.
 StartFinder::TableError StartFinder::measure_error(const DistanceTable& table) const {
-  NewtonSolver newton(surface_, {.tolerance = kCalibrationTolerance});
+  NewtonSolver newton(surface_, {.tolerance = kTableRules.ways_tolerance});
   const Index n = table.num_landmarks();
   TableError worst;
-  for (Index way = 0; way < kCalibrationWays; ++way) {
-    const Index from = way * n / kCalibrationWays;
-    for (Index other = 0; other < kCalibrationWays; ++other) {  // until one lies on the same component, and far enough
-      const Index to = (from + n / 2 + other * n / kCalibrationWays) % n;
+  for (Index way = 0; way < kTableRules.ways; ++way) {
+    const Index from = way * n / kTableRules.ways;
+    for (Index other = 0; other < kTableRules.ways; ++other) {  // until one lies on the same component, and far enough
+      const Index to = (from + n / 2 + other * n / kTableRules.ways) % n;
       const std::vector<StartPath> starts =
-          table.start_paths(table.landmark(from), table.landmark(to), {.excess = kLeastTableError, .max_paths = 1});
+          table.start_paths(table.landmark(from), table.landmark(to), {.excess = kTableRules.wrong, .max_paths = 1});
       if (starts.empty()) continue;
       const NewtonResult geodesic = newton.solve(starts.front().points, context_);
       if (geodesic.status != Status::ok) continue;
@@ -160,7 +131,7 @@ Starts StartFinder::find_by_table(const Vector& p, const Vector& q) const {
   Starts starts;
   if (!table_) return starts;
   const Stopwatch watch;
-  starts.paths = table_->start_paths(p, q, {.excess = table_error_, .max_paths = kMostRivals});
+  starts.paths = table_->start_paths(p, q, {.excess = table_error_, .max_paths = kRivalRules.most});
   starts.cell = table_->cells().grid().size();
   starts.doubt = table_doubt_;
   starts.seconds.march = watch.seconds();
@@ -171,7 +142,8 @@ Starts StartFinder::walk(const Vector& p, const Vector& q) const {
   const Stopwatch watch;
   Starts starts;
   Ways ways = find_ways(surface_, p, q, options_.all, context_);
-  starts.rivals_sought = ways.rivals_sought;
+  if (ways.sought == Ways::Sought::any) starts.doubts.add(Doubt::rivals_not_sought);
+  if (ways.sought == Ways::Sought::at_random) starts.doubts.add(Doubt::random_search);
   starts.error = kInfinity;  // how long a walk is says little
   for (Points& way : ways.paths) {
     const double length = polyline_length(way);
@@ -191,7 +163,8 @@ Starts StartFinder::find(const Vector& p, const Vector& q, int level) const {
   double longest = kInfinity;
   if (table_) {
     const double bound = table_->upper_bound(p, q);
-    longest = (1 + kExcess) * (1 + table_error_) * bound + kMarginCells * ground.cells->grid().size();
+    longest =
+        (1 + kRivalRules.excess) * (1 + table_error_) * bound + kRivalRules.margin_cells * ground.cells->grid().size();
   }
   Starts starts = find_within(longest, ground, p, q);
   // What the table's coarse cells took for a way may be none.
@@ -204,7 +177,8 @@ Starts StartFinder::find_within(double longest, const Ground& ground, const Vect
   const Stopwatch watch;
   DistanceField from_p;
   std::optional<DistanceField> from_q;
-  if (seeks_rivals() && !ground.cells->is_lazy() && (p - q).norm() > kNoRivals * ground.cells->grid().size()) {
+  if (seeks_rivals() && !ground.cells->is_lazy() &&
+      (p - q).norm() > kRivalRules.near_cells * ground.cells->grid().size()) {
     from_q.emplace();
     parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
       if (first == 0) from_p = march_towards(ground, p, q, longest);
@@ -245,14 +219,14 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   const bool arrives = std::isfinite(distance);
   starts.marched = distance;
   if (from_p.at_centres) starts.doubt = kInfinity;  // such distances are too long or too short by far
-  const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kNoRivals * starts.cell);
-  starts.rivals_sought = arrives && seeks_rivals();
+  const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kRivalRules.near_cells * starts.cell);
+  if (!arrives || !seeks_rivals()) starts.doubts.add(Doubt::rivals_not_sought);
   const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(chord(p, q));
   if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
   if (rivals) {
-    StartPathOptions options{.excess = kExcess, .max_paths = kMostRivals};
-    if (options_.all) options = {.excess = kInfinity, .max_paths = kMostWaysRound};
-    if (ground.bends && ground.bends->any()) options.spread = kSpreadOverBends;
+    StartPathOptions options{.excess = kRivalRules.excess, .max_paths = kRivalRules.most};
+    if (options_.all) options = {.excess = kInfinity, .max_paths = kRivalRules.most_of_all};
+    if (ground.bends && ground.bends->any()) options.spread = kRivalRules.spread_over_bends;
     starts.paths = start_paths_over(surface_, cells, ground.map.get(), from_p, *from_q, options, context_);
   }
   if ((rivals || at_spike) && ground.bends) add_past_bends(ground, from_p, *from_q, starts);
@@ -274,7 +248,8 @@ void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from
   const Vector p = from_p.sources.col(0);
   const Vector q = from_q.sources.col(0);
   const bool found = !starts.paths.empty();
-  const double most = found ? (1 + kExcess) * starts.paths.front().length : kMostDiagonals * levels_.box().diagonal();
+  const double most = found ? (1 + kRivalRules.excess) * starts.paths.front().length
+                            : kRivalRules.most_diagonals * levels_.box().diagonal();
   const auto add = [&](std::vector<StartPath> more) { std::ranges::move(more, std::back_inserter(starts.paths)); };
   if (found) add(side_steps(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
   if (ground.bends->along(p)) add(fan_out(surface_, ground, p, from_q, most, context_));

@@ -9,6 +9,7 @@
 #include "march/march_over.hpp"
 #include "search/cell_levels.hpp"
 #include "search/ground.hpp"
+#include "search/start_rules.hpp"
 #include "taut/march/barrier.hpp"
 #include "taut/march/distance_field.hpp"
 #include "taut/march/distance_table.hpp"
@@ -23,9 +24,9 @@ struct Starts {
   std::vector<StartPath> paths;         ///< shortest first; empty = no way was found
   std::shared_ptr<SurfaceCells> cells;  ///< null in more dimensions than cells reach
   double cell = 0;                      ///< h
-  double error = 0.1;         ///< of the starts' lengths against those of the geodesics they lead to, relative
-  double doubt = 0.03;        ///< a path this much longer than the marched way has missed it, relative
-  bool rivals_sought = true;  ///< were there to be several ways, `paths` would hold them
+  double error = kRivalRules.error;  ///< of the starts' lengths against those of the geodesics they lead to, relative
+  double doubt = kRivalRules.doubt;  ///< a path this much longer than the marched way has missed it, relative
+  Doubts doubts;                     ///< whether `paths` holds all ways that may be the shortest
   /// Of the ends, by the march; NaN where there was none.
   double marched = std::numeric_limits<double>::quiet_NaN();
   Points walked;                   ///< d x n: centres of the cells that were visited, if asked for
@@ -42,11 +43,6 @@ struct Starts {
 /// from several threads.
 class StartFinder {
  public:
-  /// Ways up to this part longer than the shortest, by the marched distances, are rivals.
-  static constexpr double kExcess = 0.15;
-  /// Within this many cells of each other two points have no rivals between them.
-  static constexpr double kNoRivals = 4;
-
   StartFinder(const Surface& surface, const PathOptions& options, const Context& context);
 
   /// Makes sure that the points near (d x n) lie where cells are looked for. True when that makes earlier cells void.
@@ -59,6 +55,7 @@ class StartFinder {
   void tabulate(Index num_pairs);
 
   [[nodiscard]] const CellLevels& levels() const { return levels_; }
+  [[nodiscard]] bool has_table() const { return table_.has_value(); }
   /// Ways by the table, in microseconds. None where there is no table or it cannot tell.
   [[nodiscard]] Starts find_by_table(const Vector& p, const Vector& q) const;
   /// Ways without cells: by walks from both ends.

@@ -53,7 +53,7 @@ void add_detours(SurfaceWalker& walker, const Vector& p, const Vector& q, std::v
 }  // namespace
 
 Ways find_ways(const Surface& surface, const Vector& p, const Vector& q, bool all, const Context& context) {
-  if (surface.dim() - surface.codim() == 1) return {follow_curve(surface, p, q, context), true};
+  if (surface.dim() - surface.codim() == 1) return {follow_curve(surface, p, q, context), Ways::Sought::all};
   const double step = (q - p).norm() / kStepsPerChord;
   SurfaceWalker walker(surface, step);
   Ways result;
@@ -67,7 +67,7 @@ Ways find_ways(const Surface& surface, const Vector& p, const Vector& q, bool al
   }
   if (all || ways.empty()) {
     add_detours(walker, p, q, ways);
-    result.rivals_sought = true;
+    result.sought = Ways::Sought::at_random;
   }
   for (int search = 0; search < kSearches && ways.empty(); ++search) {
     SurfaceWalker shorter(surface, step / (1 << search));

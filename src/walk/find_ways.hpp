@@ -9,8 +9,14 @@
 namespace taut::detail {
 
 struct Ways {
+  /// Which ways were looked for.
+  enum class Sought {
+    any,        ///< one that arrives
+    at_random,  ///< several, in random directions
+    all,        ///< all there are
+  };
   std::vector<Points> paths;  ///< d x m each
-  bool rivals_sought = false;
+  Sought sought = Sought::any;
 };
 
 /// Ways from p to q (d each, on the surface) to start a correction from, where cells do not reach: the dimension is too

@@ -1,6 +1,5 @@
 // A quarter of a great circle through the installed library.
-#include <taut/query/path.hpp>
-#include <taut/surface/formula.hpp>
+#include <taut/taut.hpp>
 
 #include <cmath>
 #include <cstdio>

@@ -322,7 +322,7 @@ TEST(Volume, SaysWhichLevelsThereAre) {
   const VoxelVolume volume = test::sampled_volume(20, 1, [](const Eigen::Vector3d& x) { return 3 + x(0); });
   const std::string missing = error_of([&] { return volume_surface(volume, {}); });
   EXPECT_THAT(missing, HasSubstr("values run from 2 to 4, half of them within 2.42 and 3.47"));
-  EXPECT_THAT(missing, HasSubstr("--iso"));
+  EXPECT_THAT(missing, HasSubstr("(option iso)"));
   EXPECT_THROW((void)volume_surface(volume, {.iso = 4.5}), EmptySurface);
   EXPECT_THAT(error_of([&] { return volume_surface(volume, {.iso = 4.5}); }),
               HasSubstr("no surface at iso 4.5: values run from 2 to 4"));

@@ -13,8 +13,8 @@ namespace taut {
 /// does not, the status is not_converged. `PathOptions::method` newton or flow; `march`, `grid` and `all` play no part.
 ///
 /// In the result `grid_path` is the polyline as it was before the correction, `candidates` has the path alone, and
-/// `unique` is true. A polyline that returns to its start and comes undone is a path of length 0; `message`
-/// says so.
+/// neither `unique` nor `tied` holds: other ways are not looked for. A polyline that returns to its start and comes
+/// undone is a path of length 0; `message` says so.
 ///
 /// Throws InvalidArgument for a wrong shape, an option out of range, and, naming the points by their number from 1, for
 /// a point without a surface within ten cells, or neighbours too far apart to tell their class; also EmptySurface,

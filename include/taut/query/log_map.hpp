@@ -23,7 +23,8 @@ struct LogMapResult {
   /// How far from q the ray from p in this direction ends after `length`, model units: the log map checked by an
   /// exponential map that shares nothing with it but F. NaN where the ray does not get that far.
   double miss = std::numeric_limits<double>::quiet_NaN();
-  bool unique = true;                    ///< as in PathResult: false where another direction is as good
+  bool unique = false;                   ///< as in PathResult: no other direction is as good, and no doubt is left
+  bool tied = false;                     ///< as in PathResult: another direction is as good
   std::optional<GeodesicScales> scales;  ///< on 2-surfaces
   SpectralCurve curve;                   ///< the geodesic from p to q, as exact as rounding allows; empty without one
 

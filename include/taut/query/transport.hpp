@@ -15,6 +15,7 @@ struct TransportResult : CarriedVectors {
   Vector to;            ///< d: the last one, on the surface
   double length = 0;    ///< of the way, model units
   bool unique = true;   ///< as in PathResult, of every part of the way
+  bool tied = false;    ///< as in PathResult, of some part
 };
 
 /// Carries `vectors` (d x m; their tangential parts count) parallel along the shortest path from column 0 of

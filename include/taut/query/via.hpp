@@ -7,7 +7,8 @@
 namespace taut {
 
 /// A path through several points in order. The PathResult part is the whole: lengths, errors and seconds are sums,
-/// residuals and cells the largest, `unique` and `locally_shortest` hold when they hold for every leg, `points` run
+/// residuals and cells the largest, `unique` and `locally_shortest` hold when they hold for every leg, `tied` and
+/// `doubts` when they do for one, `points` run
 /// through all legs without repeating the joints. It has the status and message of its worst leg, and no length and
 /// points when a leg has none. `grid_path`, `candidates` and `start_direction` are left to the legs.
 struct ViaResult : PathResult {

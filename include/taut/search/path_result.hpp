@@ -6,10 +6,14 @@
 #include <string_view>
 #include <vector>
 
+#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 #include "taut/curve/flow_summary.hpp"
 #include "taut/curve/geodesic.hpp"
+#include "taut/search/doubt.hpp"
+#include "taut/search/obstacle.hpp"
 #include "taut/search/path_options.hpp"
+#include "taut/search/rung.hpp"
 
 namespace taut {
 
@@ -62,7 +66,8 @@ struct PathPiece {
 struct PathResult : Geodesic {
   Vector from;  ///< d: the start, on the surface
   Vector to;    ///< d: the end, on the surface
-  /// Why `status` is not ok, in one sentence; where it is, mostly empty: else why the path may not be the shortest.
+  /// Why `status` is not ok, in one sentence, or why the path may not be the shortest: `obstacle` and `doubts` in
+  /// words.
   std::string message;
   double cell = 0;  ///< h of the cells that were walked, model units
   Index num_cells = 0;
@@ -78,14 +83,19 @@ struct PathResult : Geodesic {
   /// Distinct geodesics that were found, shortest first; the first one is this path. Without PathOptions::all only
   /// those that might have been the shortest were looked for.
   std::vector<PathCandidate> candidates;
-  /// False when another candidate is as short, within the errors of both or the tolerance.
-  bool unique = true;
-  /// Were other ways round looked for. If not (more than 6 dimensions and a straight walk arrives, or a march that
-  /// tells no ways apart), `unique` says nothing, and the path may not be the shortest; PathOptions::all looks always.
-  bool rivals_sought = true;
-  /// With Status::disconnected: bounds of the cells prove it for the box that was looked through (on a fitted surface
-  /// they are a careful estimate).
-  bool proved_apart = false;
+  /// True when no doubt is left that this is the only shortest path: other ways round were looked for, none is as
+  /// short.
+  bool unique = false;
+  /// Another candidate is as short, within the errors of both or the tolerance. Neither `unique` nor `tied`: not known.
+  bool tied = false;
+  /// Why there may be a shorter path, or another one as short, that was not found.
+  Doubts doubts;
+  /// Why `status` is not ok.
+  Obstacle obstacle;
+  /// What was tried, in order.
+  std::vector<RungReport> rungs;
+  /// Where the surface goes on beyond the box that was looked through (Doubt::beyond_window): that box.
+  Box window;
   /// In order from start to end, on a surface that is not smooth, or where the path meets its border; else empty.
   std::vector<PathPiece> pieces;
   PathSeconds seconds;

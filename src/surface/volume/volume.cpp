@@ -87,8 +87,8 @@ void require_options(const VolumeOptions& options, const VoxelVolume& volume) {
   if (!options.iso && !options.label) {
     const std::string labels = list_of_labels(volume.values);
     throw InvalidArgument("a volume needs a level: " + detail::value_statistics(volume.values).text() +
-                          ". Give iso (--iso)" +
-                          (labels.empty() ? "" : ", or label (--label) for a segmentation: there are " + labels));
+                          ". Give iso (option iso)" +
+                          (labels.empty() ? "" : ", or label (option label) for a segmentation: there are " + labels));
   }
   const double level = options.iso ? *options.iso : *options.label;
   if (!std::isfinite(level)) throw InvalidArgument("iso and label must be finite numbers");
@@ -119,7 +119,7 @@ void require_level(const std::vector<float>& values, double iso, const VolumeOpt
   if (least < iso && iso < largest) return;
   if (options.label) {
     throw EmptySurface("nothing is left of label " + describe(*options.label) + " after smoothing by " +
-                       describe(options.smooth.value_or(1)) + " voxels; take less (--smooth, at least 0.5)");
+                       describe(options.smooth.value_or(1)) + " voxels; take less (option smooth), at least 0.5");
   }
   throw EmptySurface("no surface at iso " + describe(iso) + ": values run from " +
                      describe(static_cast<double>(least)) + " to " + describe(static_cast<double>(largest)));

@@ -1,7 +1,7 @@
-#include "search/no_way.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
+// Why no way was found between two points that the cells connect. In this order: the march stopped where the gradient
+// falls to nothing (two sheets or the sides of a neck that nearly touch, or a singular point, by Newton's method for
+// grad F = 0); cells that tell too little; a crease at an end; a crease between the ends; else no reason is known.
+#include "search/find_obstacle.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -22,10 +22,10 @@ constexpr double kHair = 1e-7;
 /// Radians.
 constexpr double kLeastCrease = 0.5;
 
-double gradient_share(const Surface& surface, const Barrier& barrier, const PathResult& result) {
+double gradient_share(const Surface& surface, const Barrier& barrier, const Vector& from, const Vector& to) {
   if (surface.codim() > 1) return 1;
   const auto gradient = [&](const Vector& x) { return surface.jacobian(x).norm(); };
-  return gradient(barrier.point) / std::min(gradient(result.from), gradient(result.to));
+  return gradient(barrier.point) / std::min(gradient(from), gradient(to));
 }
 
 /// Does the normal jump at x: is it another one a hair's breadth away (codimension 1)?
@@ -76,50 +76,23 @@ std::optional<Pinch> find_pinch(const Surface& surface, const Vector& x, double 
 
 }  // namespace
 
-void explain_no_way(PathResult& result, const Surface& surface, const NoWay& no_way) {
-  const std::optional<Barrier>& barrier = no_way.barrier;
-  result.status = Status::not_converged;
-  const bool crease = barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease;
-  std::optional<Pinch> pinch;
-  const bool vanishing = barrier && gradient_share(surface, *barrier, result) < kSingular;
-  if (vanishing) pinch = find_pinch(surface, barrier->point, kPinchCells * result.cell);
-  if (pinch && pinch->gap > kTouching * std::max(1.0, pinch->point.norm())) {
-    result.message = fmt::format(
-        "no path was found on cells down to {:.3g}{}: near ({:.4g}) parts of the surface come within {:.2g} of each "
-        "other, be it sheets that nearly touch or the two sides of a thin neck",
-        result.cell, no_way.walked ? ", nor by walks from both ends" : "", fmt::join(pinch->point, ", "), pinch->gap);
-  } else if (vanishing) {
-    result.message = fmt::format(
-        "the surface is singular between the two points: near ({:.4g}) its gradient falls to nothing; geodesics "
-        "through a singular point are not supported",
-        fmt::join(pinch ? pinch->point : barrier->point, ", "));
-  } else if (!no_way.walked) {
-    result.message = fmt::format(
-        "no path was found: cells down to {:.3g} cannot tell the sheets of the surface apart, or the points lie on "
-        "different components",
-        result.cell);
-  } else if (!no_way.resolved) {
-    result.message = fmt::format(
-        "no path was found, neither on cells of {:.3g}, coarser than the surface bends, nor by walks from both ends; "
-        "give a smaller box around both points, or smaller cells",
-        result.cell);
-  } else if (const Vector* corner = is_corner(surface, result.from) ? &result.from
-                                    : is_corner(surface, result.to) ? &result.to
-                                                                    : nullptr) {
-    result.message = fmt::format(
-        "the surface is not smooth at ({:.4g}): its normal jumps there; take a point beside the crease or corner",
-        fmt::join(*corner, ", "));
-  } else if (crease) {
-    result.message = fmt::format(
-        "the surface is not smooth between the two points: near ({:.4g}) its normal turns by {:.0f} degrees within a "
-        "cell of {:.2g}; geodesics over a crease or through a singular point are not supported",
-        fmt::join(barrier->point, ", "), barrier->turn * 180 / std::numbers::pi, result.cell);
-  } else {
-    result.message = fmt::format(
-        "no path was found on cells down to {:.3g}, nor by walks from both ends; that there is none is not proved: a "
-        "smaller box around both points may help",
-        result.cell);
+Obstacle find_obstacle(const Surface& surface, const Vector& from, const Vector& to, const Tried& tried) {
+  const std::optional<Barrier>& barrier = tried.barrier;
+  if (barrier && gradient_share(surface, *barrier, from, to) < kSingular) {
+    const std::optional<Pinch> pinch = find_pinch(surface, barrier->point, kPinchCells * tried.cell);
+    if (pinch && pinch->gap > kTouching * std::max(1.0, pinch->point.norm())) {
+      return {Obstacle::Kind::narrow_gap, pinch->point, pinch->gap};
+    }
+    return {Obstacle::Kind::singular_between, pinch ? pinch->point : barrier->point};
   }
+  if (!tried.walked) return {Obstacle::Kind::sheets_not_told};
+  if (!tried.resolved) return {Obstacle::Kind::coarse_cells};
+  if (is_corner(surface, from)) return {Obstacle::Kind::corner, from};
+  if (is_corner(surface, to)) return {Obstacle::Kind::corner, to};
+  if (barrier && barrier->turn > kLeastCrease && barrier->turn < std::numbers::pi - kLeastCrease) {
+    return {Obstacle::Kind::crease, barrier->point, barrier->turn};
+  }
+  return {Obstacle::Kind::no_way};
 }
 
 }  // namespace taut::detail

@@ -1,0 +1,224 @@
+// The rungs of path_search.cpp: what each does, and which doubts it leaves.
+#include <fmt/format.h>
+
+#include <memory>
+#include <utility>
+
+#include "curve/polyline.hpp"
+#include "search/ladder_rules.hpp"
+#include "search/path_search.hpp"
+#include "taut/cells/find_box.hpp"
+#include "taut/core/error.hpp"
+
+namespace taut::detail {
+namespace {
+
+/// Corrects starts; the time of that counts.
+bool correct(Inquiry& now, Corrector& corrector, const Starts& starts, bool last, PathResult& result) {
+  result = now.blank;
+  const bool sure = corrector.correct(result, starts, last);
+  now.blank.seconds = result.seconds;
+  return sure;
+}
+
+}  // namespace
+
+/// On a surface with edges the other rungs would follow one face beyond its end, or go round. They come after this one
+/// where it cannot be asked or knows no way at all, and their path is in doubt.
+void PathSearch::go_over_faces(Inquiry& now) const {
+  std::optional<PathResult> found = faces_.find(now.from(), now.to(), levels().extent());
+  if (!found) {
+    now.over_edges.add(Doubt::edges_not_searched);
+    return;
+  }
+  now.add_effort(*found);
+  if (found->status != Status::ok && !(found->marched > 0)) {
+    now.over_edges.add(Doubt::edges_failed);
+    return;
+  }
+  // There are ways. Where none was made a geodesic, a search for smooth surfaces would not do better.
+  if (found->status != Status::ok) found->obstacle = {Obstacle::Kind::faces};
+  now.doubts = found->doubts;
+  now.best = std::move(found);
+  now.settled = true;
+}
+
+void PathSearch::ask_table(Inquiry& now, Corrector& corrector) const {
+  const Starts starts = finder_.find_by_table(now.from(), now.to());
+  now.note(starts, levels().grid());
+  if (starts.paths.empty()) return;
+  PathResult result;
+  const bool sure = correct(now, corrector, starts, false, result);
+  if (result.status != Status::ok) return;  // fields do better
+  now.doubts = starts.doubts;
+  if (!sure) {
+    now.doubts.add(Doubt::start_failed);
+  } else if (!levels().resolved()) {
+    now.doubts.add(Doubt::coarse_cells);
+  } else if (finder_.bends_sharply(0, result.points)) {
+    now.doubts.add(Doubt::sharp_bends);
+  }
+  now.best = std::move(result);
+}
+
+/// Cells that cannot tell sheets apart lead nowhere, or to a start from which the correction fails, or past the
+/// shortest way: finer ones are tried. The first path above doubt is kept; failing that, the better of the first two.
+/// That no path comes from cells far coarser, by request, than would be chosen says little, and does not count.
+void PathSearch::march_fields(Inquiry& now, Corrector& corrector) const {
+  const int level = now.level++;
+  if (finder_.known_to_be_apart(level, now.from(), now.to())) {
+    now.give_up(Status::disconnected, Obstacle::Kind::apart);
+    return;
+  }
+  if (level > 0 && !now.best) {
+    context_.tell(fmt::format("cells of {:.3g} cannot tell the sheets of the surface apart; trying finer ones",
+                              levels().size(level - 1)));
+  }
+  Starts starts;
+  try {
+    const bool given = level == 0 && now.first;
+    starts = given ? *std::exchange(now.first, std::nullopt) : finder_.find(now.from(), now.to(), level);
+  } catch (const OutOfMemory&) {
+    if (level == 0 && !levels().lazy()) throw;
+    now.level = num_levels();  // finer ones would not fit either
+    now.cells_spent = levels().lazy();
+    if (now.cells_spent) now.blank.cell = levels().size(0);
+    return;
+  }
+  now.note(starts, levels().grid());
+  now.barrier = starts.barrier;
+  now.blocked = starts.paths.empty();
+  now.next_cells = starts.cells->num_cells() << (surface_.dim() - 1);
+  if (now.blocked) {
+    if (finder_.apart(*starts.cells, level, now.from(), now.to())) {
+      now.give_up(Status::disconnected, Obstacle::Kind::apart);
+    }
+    return;
+  }
+  // Within a cell the start is as good as it gets.
+  const bool only = (now.from() - now.to()).norm() < starts.cell;
+  const bool coarse = levels().coarser_than_chosen(level);
+  const bool second = now.counts;
+  const bool last = only || second || coarse || level + 1 == num_levels();
+  PathResult result;
+  const bool sure = correct(now, corrector, starts, last, result) || only;
+  const bool better = !now.best || is_better(result, *now.best);
+  if (better) now.best = std::move(result);
+  if (better || !now.marched) now.of_cells = doubts_of_cells(*now.best, starts, level);
+  now.marched = true;
+  now.counts = now.counts || !coarse || now.has_path();
+  if (second) now.level = num_levels();
+  now.doubts = starts.doubts;
+  now.doubts.add(now.of_cells);
+  if (!sure) now.doubts.add(Doubt::start_failed);
+}
+
+/// In more dimensions than cells reach; where cells have joined the ends nowhere: thin shells, of which a cell holds
+/// both sides; and where no more cells may grow.
+void PathSearch::walk(Inquiry& now, Corrector& corrector) const {
+  const Starts starts = finder_.walk(now.from(), now.to());
+  const bool no_cells = !levels().exist();
+  if (no_cells) {
+    now.note(starts, GridMethod::automatic);
+  } else {
+    now.blank.seconds.march += starts.seconds.march;
+  }
+  if (starts.paths.empty() || options_.method == CorrectionMethod::grid) {
+    if (no_cells) now.give_up(Status::disconnected, Obstacle::Kind::apart_by_walks);
+    if (now.cells_spent) now.give_up(Status::not_converged, Obstacle::Kind::cells_spent);
+    return;
+  }
+  PathResult result;
+  (void)correct(now, corrector, starts, true, result);  // there are no other starts
+  const bool ok = result.status == Status::ok;
+  if (no_cells || now.cells_spent || ok) {
+    now.doubts = starts.doubts;
+    if (now.cells_spent) now.doubts.add(Doubt::cells_spent);
+    if (!no_cells && !now.cells_spent) now.doubts.add(Doubt::sheets_not_told);
+    now.best = std::move(result);
+    return;
+  }
+  // Walks on thin shells may step from sheet to sheet: where no geodesic comes of it, there was no way. Along a curve
+  // there was.
+  if (surface_.dim() - surface_.codim() == 1) now.fallback = std::move(result);
+}
+
+/// Cells too coarse for the whole box may be fine enough for the part of it that shorter paths can visit. The paper's
+/// march keeps to its cells.
+void PathSearch::look_closer(Inquiry& now, Corrector& corrector) const {
+  const PathResult& found = *now.best;
+  const Box part = part_of_shorter(found);
+  PathOptions options = options_;
+  const auto search = [&](double cell) {
+    options.cell = cell;
+    auto closer = std::make_unique<PathSearch>(surface_.with_box(part), options, context_, Scope::part);
+    closer->prepare(chord(found.from, found.to));
+    return closer;
+  };
+  std::unique_ptr<PathSearch> closer = search(0);
+  if (closer->levels().size(0) > kLadderRules.finer_cells * found.cell) closer = search(found.cell / 2);
+  try {
+    PathResult again = closer->find(found.from, found.to, corrector);
+    now.add_effort(again);
+    if (again.status != Status::ok || again.length > (1 + options_.tolerance) * found.length) return;
+    now.doubts = again.doubts;
+    again.message.clear();
+    now.best = std::move(again);
+  } catch (const OutOfMemory&) {  // what was found is not lost
+  }
+}
+
+/// A search that looks through that window.
+const PathSearch& PathSearch::through(int doublings) const {
+  const std::lock_guard lock(wider_turn_);
+  const auto at = static_cast<std::size_t>(doublings) - 1;
+  if (wider_.size() <= at) wider_.resize(at + 1);
+  if (!wider_[at]) {
+    const SurfaceExtent seen = through_window(surface_, levels().extent(), window(doublings), context_);
+    wider_[at] = std::make_unique<PathSearch>(surface_.with_box(seen.box), options_, context_, Scope::window);
+    wider_[at]->prepare(levels().grows_from_ends() ? points_ : Points(surface_.dim(), 0));
+  }
+  return *wider_[at];
+}
+
+/// Where the surface goes on beyond the box, shorter ways may, too, or the only one: those are sought through windows
+/// wide enough.
+void PathSearch::look_wider(Inquiry& now, Corrector& corrector) const {
+  if (now.doublings == 0) now.window = levels().box();
+  const bool path = now.has_path();
+  const PathResult& found = *now.best;
+  const int before = now.doublings++;
+  const int most = kLadderRules.most_doublings;
+  while (path && now.doublings < most && !have_room(found, now.doublings)) ++now.doublings;
+  if (now.doublings <= most && is_window_affordable(found, now.doublings - before)) {
+    try {
+      const PathSearch& wider = through(now.doublings);
+      PathResult again = wider.find(now.from(), now.to(), corrector);
+      now.add_effort(again);
+      const bool ahead = path ? again.status == Status::ok && again.length <= (1 + options_.tolerance) * found.length
+                              : again.status == Status::ok || again.obstacle.kind == Obstacle::Kind::apart;
+      if (ahead) {
+        now.window = wider.levels().box();
+        now.doubts = again.doubts;
+        again.message.clear();
+        now.best = std::move(again);
+        return;
+      }
+    } catch (const OutOfMemory&) {  // what was found is not lost
+    }
+  }
+  now.doubts.add(Doubt::beyond_window);
+  now.window_shut = true;
+}
+
+/// Where a domain cuts the surface the shortest path may run along the cut: it is the shorter one, or the only one.
+void PathSearch::go_along_border(Inquiry& now) const {
+  std::optional<PathResult> other = faces_.find(now.from(), now.to(), levels().extent());
+  if (!other) return;
+  now.add_effort(*other);
+  if (other->status != Status::ok || (now.has_path() && now.best->length <= other->length)) return;
+  now.doubts = other->doubts;
+  now.best = std::move(other);
+}
+
+}  // namespace taut::detail
