@@ -134,6 +134,7 @@ class RayField {
   }
 
   Outcome accelerate(Index j, const double* v) {
+    if (D > 0 && k_ == 1) return accelerate_by_gradient(j, v);
     double* q = &q_[size(j * d_ * k_)];
     double* r = &r_[size(j * k_ * k_)];
     double* y = &y_[size(j * k_)];
@@ -160,6 +161,25 @@ class RayField {
       lambda[i] /= r[i + i * k_];
     }
     return a.allFinite() ? Outcome::regular : Outcome::not_finite;
+  }
+
+  /// The same for one equation, without loops over equations: J^T = |g| n. A third of a ray's time went there.
+  Outcome accelerate_by_gradient(Index j, const double* velocity) {
+    const VectorD g = Eigen::Map<const VectorD>(&jacobian_[size(j * d_)], dim());
+    const VectorD v = Eigen::Map<const VectorD>(velocity, dim());
+    const VectorD h = Eigen::Map<const VectorD>(&h_[size(j * d_)], dim());
+    if (!std::isfinite(value(0, j)) || !g.allFinite()) return Outcome::not_finite;
+    const double length = NormalSpace<D>::norm(dim(), g.data());
+    if (!(length > 0)) return Outcome::singular;
+    const VectorD n = g / length;
+    const double y = h.dot(v) / length;
+    Eigen::Map<VectorD>(&q_[size(j * d_)], dim()) = n;
+    r_[size(j)] = length;
+    lambda_[size(j)] = y / length;
+    value(0, j) /= length;
+    normal_velocity(0, j) = n.dot(v);
+    acceleration.col(j) = -y * n;
+    return acceleration.col(j).allFinite() ? Outcome::regular : Outcome::not_finite;
   }
 
   std::unique_ptr<Evaluator> evaluator_;
