@@ -1,6 +1,7 @@
 // The file readers on arbitrary bytes: each must return a valid cloud or throw an IoError, and hold no more memory than
-// a multiple of the input's size.
+// a multiple of the input's size. The first line of an input is the extension; one that is none stands for any.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -28,9 +29,12 @@ void check(const taut::PointCloud& cloud) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto& extensions = taut::point_cloud_extensions();
-  if (size < 2) return 0;
-  const std::string& extension = extensions[data[0] % extensions.size()];
-  const std::string bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const std::string input(reinterpret_cast<const char*>(data), size);
+  const std::size_t end = input.find('\n');
+  if (end == std::string::npos) return 0;
+  std::string extension = input.substr(0, end);
+  if (std::ranges::find(extensions, extension) == extensions.end()) extension = extensions[size % extensions.size()];
+  const std::string bytes = input.substr(end + 1);
   // Tables without a header are read in another way where the user says how many columns are coordinates.
   for (const std::optional<taut::Index> dim : {std::optional<taut::Index>(), std::optional<taut::Index>(3)}) {
     try {

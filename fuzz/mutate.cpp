@@ -1,7 +1,9 @@
-// Runs a fuzz target without a fuzzing engine: `TARGET COUNT FILE...` feeds it COUNT random mutations of the files,
-// after the files themselves. Without coverage feedback it finds less than libFuzzer, but it needs no Clang.
+// Runs a fuzz target without a fuzzing engine: `TARGET SECONDS FILE...` feeds it random mutations of the files, after
+// the files themselves, for so long. Without coverage feedback it finds less than libFuzzer, but it needs no Clang.
+// What fails is left in the file "failed_input" beside the program.
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -16,10 +18,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace {
 
-constexpr unsigned kSeed = 1;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kLastInput = "failed_input";
 constexpr std::size_t kLongest = 4096;  // of a seed: short inputs reach more of a parser per second
 
 void run(const std::string& bytes) {
+  std::ofstream(kLastInput, std::ios::binary) << bytes;
   LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
@@ -52,7 +57,7 @@ std::string mutated(std::string bytes, const std::vector<std::string>& seeds, st
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: %s COUNT FILE...\n", argv[0]);
+    std::fprintf(stderr, "usage: %s SECONDS FILE...\n", argv[0]);
     return 2;
   }
   std::vector<std::string> seeds;
@@ -63,10 +68,13 @@ int main(int argc, char** argv) {
     if (!bytes.empty()) seeds.push_back(std::move(bytes));
   }
   if (seeds.empty()) return 2;
-  for (const std::string& seed : seeds) run(seed);
-  std::mt19937 random(kSeed);
-  const long count = std::atol(argv[1]);
-  for (long i = 0; i < count; ++i) run(mutated(seeds[random() % seeds.size()], seeds, random));
-  std::printf("%ld mutations of %zu files, seed %u: no failure\n", count, seeds.size(), kSeed);
+  for (const std::string& file : seeds) run(file);
+  const unsigned seed = std::random_device{}();
+  std::mt19937 random(seed);
+  const auto end = Clock::now() + std::chrono::duration<double>(std::atof(argv[1]));
+  long count = 0;
+  for (; Clock::now() < end; ++count) run(mutated(seeds[random() % seeds.size()], seeds, random));
+  std::remove(kLastInput);
+  std::printf("%s: %ld mutations of %zu files, seed %u: no failure\n", argv[0], count, seeds.size(), seed);
   return 0;
 }
