@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -103,6 +104,13 @@ class RunningProgram {
 inline ProgramResult run_taut(const std::vector<std::string>& arguments, const std::string& device = "",
                               const std::string& input = "/dev/null") {
   return RunningProgram(arguments, device, input).wait(std::chrono::seconds(60));
+}
+
+inline std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
 }
 
 }  // namespace taut::test

@@ -13,6 +13,7 @@
 namespace taut {
 namespace {
 
+using test::lines_of;
 using test::run_taut;
 using test::TempFolder;
 
@@ -247,18 +248,6 @@ std::vector<BadInput> bad_inputs() {
       {"field without result", {"field", sphere, "--from", "1,0,0"}, kWrongUsage, "--out"},
       {"model of another kind", {"fit", "{}/sphere.xyz", "--out", "{}/result/s.ply"}, kWrongUsage, ".taut"},
   };
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::size_t begin = 0;
-  while (begin < text.size()) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    if (!line.starts_with("taut: note: ")) lines.push_back(line);
-    begin = end + 1;
-  }
-  return lines;
 }
 
 /// One line; a formula's error is followed by the formula and a caret under the column.

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,6 +12,7 @@
 namespace taut {
 namespace {
 
+using test::lines_of;
 using test::ProgramResult;
 using test::run_taut;
 using test::TempFolder;
@@ -25,13 +25,6 @@ ProgramResult ray(const std::string& surface, const std::string& from, const std
                                         direction, "--length", length,   "--json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_taut(arguments);
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
 }
 
 TEST(ExpCommand, WritesTheContractsJson) {

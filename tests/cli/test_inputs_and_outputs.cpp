@@ -14,17 +14,11 @@
 namespace taut {
 namespace {
 
+using test::lines_of;
 using test::run_taut;
 using test::TempFolder;
 
 const std::string kSphere = "x^2+y^2+z^2=1";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(InputsAndOutputs, AFormulaMayStandInAFile) {
   const TempFolder folder;

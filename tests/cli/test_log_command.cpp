@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,18 +13,12 @@
 namespace taut {
 namespace {
 
+using test::lines_of;
 using test::ProgramResult;
 using test::run_taut;
 using test::TempFolder;
 
 const std::string kSphere = "x^2+y^2+z^2=1";
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(LogCommand, WritesTheContractsJson) {
   const ProgramResult result = run_taut({"log", kSphere, "--from", "1,0,0", "--to", "0,1,0", "--json"});
@@ -98,7 +91,7 @@ TEST(TransportCommand, GoesAlongACurveAndToManyPoints) {
   ASSERT_EQ(round.exit_code, 0) << round.err;
   EXPECT_NEAR(nlohmann::json::parse(round.out)["vectors"][0][2].get<double>(), 1, 1e-12);
   const auto targets = folder.write("targets.csv", "0,1,0\n0,0,1\n2,2\n");
-  for (const std::string surface : {kSphere, std::string("x1^2+x2^2+x3^2+x4^2=1")}) {
+  for (const std::string& surface : {kSphere, std::string("x1^2+x2^2+x3^2+x4^2=1")}) {
     const bool space = surface == kSphere;
     const ProgramResult many =
         run_taut({"transport", surface, "--from", space ? "1,0,0" : "1,0,0,0", "--to-file",

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,8 @@
 
 namespace taut::test {
 namespace {
+
+using test::lines_of;
 
 using nlohmann::json;
 using testing::HasSubstr;
@@ -24,13 +25,6 @@ int occurrences(const std::string& text, const std::string& part) {
   int n = 0;
   for (std::size_t i = text.find(part); i != std::string::npos; i = text.find(part, i + 1)) ++n;
   return n;
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
 }
 
 /// As the legend of a picture counts them; 0 = it names none.
