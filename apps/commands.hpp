@@ -28,6 +28,7 @@ Run add_matrix_command(CLI::App& app);
 Run add_sample_command(CLI::App& app);
 Run add_voronoi_command(CLI::App& app);
 Run add_mean_command(CLI::App& app);
+Run add_curve_command(CLI::App& app);
 Run add_fit_command(CLI::App& app);
 Run add_mesh_command(CLI::App& app);
 Run add_info_command(CLI::App& app);

@@ -23,6 +23,9 @@ const std::map<std::string, std::string>& examples() {
       {"sample", "  taut sample 'x^2+y^2+4z^2=1' -n 100 --out points.csv\n"},
       {"voronoi", "  taut voronoi 'x^2+y^2+4z^2=1' --sources points.csv --out cells.ply\n"},
       {"mean", "  taut mean 'x^2+y^2+4z^2=1' --points points.csv\n"},
+      {"curve",
+       "  taut curve 'x^2+y^2+4z^2=1' --bezier controls.csv --out curve.csv\n"
+       "  taut curve scan.ply --bezier controls.csv --degree 3 --out curve.html\n"},
       {"fit", "  taut fit scan.ply --out scan.taut\n"},
       {"mesh", "  taut mesh 'x^4+y^4+z^4=1' --out cube.obj\n"},
       {"info",

@@ -100,8 +100,8 @@ int run_program(int argc, char** argv) {
 
   std::vector<std::pair<CLI::App*, Run>> commands;
   for (const auto add : {add_path_command, add_field_command, add_exp_command, add_log_command, add_transport_command,
-                         add_matrix_command, add_sample_command, add_voronoi_command, add_mean_command, add_fit_command,
-                         add_mesh_command, add_info_command, add_paper_command}) {
+                         add_matrix_command, add_sample_command, add_voronoi_command, add_mean_command,
+                         add_curve_command, add_fit_command, add_mesh_command, add_info_command, add_paper_command}) {
     Run run = add(app);
     commands.emplace_back(app.get_subcommands(nullptr).back(), std::move(run));
     commands.back().first->footer(examples_of(commands.back().first->get_name()));

@@ -355,7 +355,7 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines));
       const bool few = output.marks.cols() <= kMostLabels;
       for (Index j = 0; j < output.marks.cols(); ++j) {
-        scene->points.push_back({.position = output.marks.col(j), .label = few ? "source" : ""});
+        scene->points.push_back({.position = output.marks.col(j), .label = few ? output.mark_name : ""});
       }
     }
     write_picture(file, extension, *scene);

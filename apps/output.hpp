@@ -79,6 +79,7 @@ struct MeshOutput {
   const TriangleMesh& mesh;
   std::optional<Polylines> isolines = {};  ///< drawn on the mesh in pictures; other files hold them instead of it
   Points marks;                            ///< 3 x m: points to show, such as the sources of a field
+  std::string mark_name = "source";
   std::vector<SceneFact> facts;
   std::string title;
 };
