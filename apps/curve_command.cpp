@@ -92,9 +92,10 @@ void write_files(const CurveArguments& arguments, const Surface& surface, const 
     if (!mesh) mesh = display_mesh(surface, {}, context);
     write_mesh_files(one, {.surface = surface,
                            .mesh = *mesh,
-                           .isolines = lines,
+                           .isolines = {},
                            .marks = controls,
                            .mark_name = "control point",
+                           .curves = {curve.points},
                            .facts = facts,
                            .title = "Bezier curve on " + picture_title(arguments.geodesic.surface.surface)});
   }

@@ -353,6 +353,7 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
       if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines));
+      for (const Points& curve : output.curves) scene->paths.push_back({.points = curve, .label = {}});
       const bool few = output.marks.cols() <= kMostLabels;
       for (Index j = 0; j < output.marks.cols(); ++j) {
         scene->points.push_back({.position = output.marks.col(j), .label = few ? output.mark_name : ""});

@@ -80,6 +80,7 @@ struct MeshOutput {
   std::optional<Polylines> isolines = {};  ///< drawn on the mesh in pictures; other files hold them instead of it
   Points marks;                            ///< 3 x m: points to show, such as the sources of a field
   std::string mark_name = "source";
+  std::vector<Points> curves = {};  ///< each 3 x n: drawn thick in pictures, as paths are
   std::vector<SceneFact> facts;
   std::string title;
 };

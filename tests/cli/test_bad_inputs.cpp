@@ -250,8 +250,9 @@ std::vector<BadInput> bad_inputs() {
   };
 }
 
-/// One line; a formula's error is followed by the formula and a caret under the column.
-bool is_one_message(const std::vector<std::string>& lines) {
+/// One line beside notes; a formula's error is followed by the formula and a caret under the column.
+bool is_one_message(std::vector<std::string> lines) {
+  std::erase_if(lines, [](const std::string& line) { return line.starts_with("taut: note: "); });
   if (lines.empty() || !lines[0].starts_with("taut: ")) return false;
   return lines.size() == 1 ||
          (lines.size() == 3 && lines[2].find_first_not_of(' ') == lines[2].size() - 1 && lines[2].ends_with('^'));
