@@ -44,4 +44,13 @@ std::string raw(T value, bool big_endian = false) {
   return bytes;
 }
 
+/// The bytes that two hexadecimal digits each stand for: small binary files in a test's text.
+inline std::string from_hex(std::string_view hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
+  }
+  return bytes;
+}
+
 }  // namespace taut::test

@@ -12,6 +12,7 @@
 namespace taut {
 namespace {
 
+using test::from_hex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -27,14 +28,6 @@ std::string error_of(std::string_view name, std::string_view bytes) {
     return error.what();
   }
   return {};
-}
-
-std::string from_hex(std::string_view hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
-  }
-  return bytes;
 }
 
 /// 4 x 5 pixels of 16 bits with a gamma, which must not touch the values.

@@ -13,6 +13,7 @@
 namespace taut {
 namespace {
 
+using test::from_hex;
 using ::testing::HasSubstr;
 
 NeuralNetwork read_as(std::string_view name, std::string_view bytes, const NetworkFileOptions& options = {}) {
@@ -27,14 +28,6 @@ std::string error_of(std::string_view name, std::string_view bytes, const Networ
     return error.what();
   }
   return {};
-}
-
-std::string from_hex(std::string_view hex) {
-  std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
-    bytes += static_cast<char>(std::stoi(std::string(hex.substr(i, 2)), nullptr, 16));
-  }
-  return bytes;
 }
 
 /// numpy.savez_compressed: W0 2 x 3 (float32), b0, W1 1 x 2, b1, activation = "tanh".
