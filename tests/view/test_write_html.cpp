@@ -127,9 +127,9 @@ TEST(WriteHtml, OpensWithTheViewAndTheCellsAskedFor) {
 
 TEST(WriteHtml, ScriptIsValidJavaScript) {
   if (std::system("node --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no node here";
-  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "taut_page.js";
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "taut_page.mjs";
   const std::string html = to_html(test::ball_scene(12));
-  const std::string script = between(html, "<script>\n", "</script>");
+  const std::string script = between(html, "<script type=\"module\">\n", "</script>");
   ASSERT_GT(script.size(), 10000U);
   std::ofstream(file) << script;
   EXPECT_EQ(std::system(("node --check '" + file.string() + "'").c_str()), 0);
