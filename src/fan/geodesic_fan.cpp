@@ -49,7 +49,8 @@ struct Outcome {
   std::vector<RayStrip> strips;
   std::vector<RayStrip> broken;  // beyond which nothing is known
   Index num_evaluated = 0;
-  Index num_vain = 0;  // attempts that ended in a break
+  Index num_vain = 0;       // attempts that ended in a break
+  Index num_looked_at = 0;  // panels that may have held a point
 };
 
 }  // namespace
@@ -83,12 +84,13 @@ struct GeodesicFan::Impl {
   std::vector<Break> breaks;  // of those that matter
   Index num_evaluated = 0;
   Index num_vain = 0;
+  Index num_looked_at = 0;
 
   explicit Impl(const Surface& s, const FanOptions& o) : surface(s), options(o) {}
 
   [[nodiscard]] bool spent() const {
     return static_cast<Index>(patches.size()) >= options.max_patches || num_vain > kMostVain ||
-           num_evaluated > options.max_evaluated;
+           num_evaluated + num_looked_at > options.max_evaluated;
   }
 
   [[nodiscard]] double front() const {
@@ -113,9 +115,10 @@ struct GeodesicFan::Impl {
   }
 
   /// A shorter geodesic than `bound` meets x.
-  [[nodiscard]] bool met_below(const Eigen::Vector3d& x, double bound, std::int64_t except) const {
+  [[nodiscard]] bool met_below(const Eigen::Vector3d& x, double bound, std::int64_t except, Index& looked_at) const {
     bool met = false;
     index.near(x, [&](std::int32_t i) {
+      ++looked_at;
       const std::size_t p = static_cast<std::size_t>(i);
       if (frames[p].start >= bound || i == except || !detail::may_hold(frames[p], x)) return true;
       PatchHit hit;
@@ -126,7 +129,7 @@ struct GeodesicFan::Impl {
   }
 
   /// No shortest way goes on along any ray of the strip: cases (1) and (2) of the class comment.
-  [[nodiscard]] bool is_over(const RayStrip& strip) const {
+  [[nodiscard]] bool is_over(const RayStrip& strip, Index& looked_at) const {
     if (strip.length == 0) return false;
     if ((strip.jacobi < 0).all()) return true;
     const auto& node = detail::PanelBasis::tables().ray;
@@ -136,7 +139,7 @@ struct GeodesicFan::Impl {
       const double after = i + 1 == detail::kRays ? 1 - node(i) : (node(i + 1) - node(i)) / 2;
       const double apart = front_speed * std::max(before, after);
       const double slack = strip.error + 16 * kEpsilon * scale + 1e-12 * strip.length;
-      return met_below(strip.x.segment<3>(3 * i), strip.distance() - apart - slack, strip.parent);
+      return met_below(strip.x.segment<3>(3 * i), strip.distance() - apart - slack, strip.parent, looked_at);
     };
     constexpr int kMiddle = detail::kRays / 2;
     if (!passed(kMiddle) || !passed(0) || !passed(detail::kRays - 1)) return false;
@@ -148,7 +151,7 @@ struct GeodesicFan::Impl {
 
   /// Follows a strip until all that came of it has passed `until`.
   void follow(const RayStrip& begin, double until, int most_attempts, StripStepper& stepper, Outcome& outcome) const {
-    if (is_over(begin)) return;
+    if (is_over(begin, outcome.num_looked_at)) return;
     const Index evaluated = stepper.num_evaluated;
     std::vector<RayStrip> stack{begin};
     int attempts = 0;
@@ -257,6 +260,7 @@ struct GeodesicFan::Impl {
       }
       num_evaluated += outcome.num_evaluated;
       num_vain += outcome.num_vain;
+      num_looked_at += outcome.num_looked_at;
     }
   }
 
@@ -264,7 +268,7 @@ struct GeodesicFan::Impl {
   void weigh_breaks() {
     breaks.clear();
     for (const RayStrip& strip : broken) {
-      if (is_over(strip)) continue;
+      if (is_over(strip, num_looked_at)) continue;
       Eigen::Vector3d centre = Eigen::Vector3d::Zero();
       for (int i = 0; i < detail::kRays; ++i) centre += strip.x.segment<3>(3 * i) / detail::kRays;
       double radius = 0;
@@ -414,6 +418,29 @@ struct GeodesicFan::Impl {
     return result;
   }
 
+  [[nodiscard]] std::vector<FanHit> ways(const Eigen::Vector3d& q, double longest) const {
+    std::vector<FanHit> found;
+    index.near(q, [&](std::int32_t i) {
+      const std::size_t p = static_cast<std::size_t>(i);
+      PatchHit hit;
+      if (patches[p].astray || frames[p].start > longest || !detail::may_hold(frames[p], q)) return true;
+      if (!invert(p, q, hit) || hit.distance > longest) return true;
+      // Panels side by side hold the same geodesic at their common edge. Two that arrive from nearly one side and are
+      // as long are one, or are about to merge at a conjugate point.
+      constexpr double kSameWay = 1e-4;  // radians, and relative
+      const bool known = std::ranges::any_of(found, [&](const FanHit& other) {
+        return (other.arrival - hit.arrival).norm() < kSameWay &&
+               std::abs(other.distance - hit.distance) <= kSameWay * hit.distance;
+      });
+      if (known) return true;
+      found.push_back(describe(hit, patches[p].source));
+      found.back().distance = hit.distance;
+      return true;
+    });
+    std::ranges::stable_sort(found, {}, &FanHit::distance);
+    return found;
+  }
+
   [[nodiscard]] FanHit describe(const PatchHit& hit, std::int32_t source) const {
     const Source& from = sources[static_cast<std::size_t>(source)];
     FanHit result;
@@ -498,6 +525,10 @@ bool GeodesicFan::finished() const { return impl_->strips.empty() || impl_->spen
 bool GeodesicFan::broken() const { return !impl_->breaks.empty(); }
 Index GeodesicFan::num_patches() const { return static_cast<Index>(impl_->patches.size()); }
 Index GeodesicFan::num_evaluated() const { return impl_->num_evaluated; }
+
+std::vector<FanHit> GeodesicFan::ways(const Eigen::Vector3d& q, double longest) const {
+  return impl_->ways(q, longest);
+}
 
 std::vector<FanHit> GeodesicFan::locate(const PointsIn& targets, const Context& context) const {
   std::vector<FanHit> hits(static_cast<std::size_t>(targets.cols()));

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <random>
 #include <utility>
 
 #include "search/cell_size.hpp"
@@ -35,6 +37,31 @@ constexpr Index kMostRefinedCells = 200'000;
 constexpr double kPointsPerSide = 16;
 /// Lazy cells in so many dimensions: along the largest coordinate.
 constexpr double kLazyCellsPerRadius = 3;
+
+/// The nearest of the surface points that are found from points around x (d), at distances of reach / 2^i. From x
+/// itself Newton's method can stall where F is flat (a power of a polynomial) or has a hollow.
+std::optional<ProjectionResult> project_from_around(const Surface& surface, const VectorIn& x, double reach) {
+  constexpr int kShells = 7;
+  constexpr Index kDirections = 32;  // a shell, the same in every run
+  const Index d = surface.dim();
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  Points from(d, kShells * kDirections);
+  for (Index j = 0; j < from.cols(); ++j) {
+    Vector direction(d);
+    for (double& c : direction) c = normal(random);
+    from.col(j) = x + std::ldexp(reach, -static_cast<int>(j / kDirections)) * direction.normalized();
+  }
+  const auto evaluator = surface.make_evaluator();
+  const auto found = project_to_surface(*evaluator, d, surface.codim(), from);
+  std::optional<ProjectionResult> nearest;
+  for (Index j = 0; j < from.cols(); ++j) {
+    const double distance = (from.col(j) - x).norm();
+    if (!found(j) || (nearest && distance >= nearest->distance)) continue;
+    nearest = ProjectionResult{.point = from.col(j), .distance = distance, .converged = true};
+  }
+  return nearest;
+}
 
 }  // namespace
 
@@ -228,7 +255,10 @@ std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
 }
 
 Vector CellLevels::on_surface(const VectorIn& x, const char* name) const {
-  const ProjectionResult projected = project_to_surface(surface_, x);
+  ProjectionResult projected = project_to_surface(surface_, x);
+  if (!projected.converged) {
+    if (const auto around = project_from_around(surface_, x, kMostCellsOff * size_)) projected = *around;
+  }
   if (!projected.converged) {
     throw InvalidArgument(
         fmt::format("{} point {}: no point of the surface was found near it; give one closer", name, text_of(x)));

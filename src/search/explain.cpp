@@ -39,6 +39,9 @@ std::string on_obstacle(const PathResult& result) {
       if (!result.doubts.has(Doubt::beyond_window)) return apart;
       return fmt::format("{} within {}, beyond which it goes on", apart, text_of(result.window));
     }
+    case Obstacle::Kind::apart_by_fan:
+      return "the two points lie on different components of the surface: no geodesic from the start, of those in all "
+             "directions, comes to the end";
     case Obstacle::Kind::apart_by_walks:
       return fmt::format(
           "no path was found: the two points seem to lie on different components (random searches from both ends do "

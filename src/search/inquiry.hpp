@@ -45,6 +45,7 @@ struct Inquiry {
       best;              ///< the best path so far; without one that is ok, the best curve or why there is none
   Doubts doubts;         ///< whether `best` is the shortest
   bool settled = false;  ///< no rung could change anything
+  bool proved = false;   ///< by all geodesics from the start: nothing shorter is anywhere
   std::vector<RungReport> rungs;
 
   // Faces.

@@ -20,10 +20,6 @@ struct LadderRules {
   /// smaller by that one: else the same would come of it.
   double smaller_part = 0.7;
   double finer_cells = 0.75;
-  /// ... where the surface bends sharply along the path: if the part is smaller by this, or the marched way is wrong by
-  /// more than that part. A smoothed Kummer surface had 211 of 2,000 random pairs too long, by up to 45 %; so none.
-  double local_part = 0.5;
-  double mismarched = 0.02;
 
   /// Wider. Windows are 2, 4, ..., 2^6 times as wide as the first. Of x = a z^2 (a = 1, 3, 10) 1,200 pairs came out
   /// right in them.
@@ -31,6 +27,16 @@ struct LadderRules {
   /// ... as long as cells of a size that was asked for are no more than this, for a shorter path and for any.
   Index most_cells_for_shorter = 6'000'000;
   Index most_cells_for_any = 500'000;
+
+  /// Fan. Where there is no path yet, before cells get more than this: two shells 0.01 apart took 12 s on cells.
+  Index most_cells_before_fan = 100'000;
+  /// It may do this part of the work that a field's fan may: about a second. Of 120 fans that were wanted by tests most
+  /// took a thirtieth of that, the largest, over the rims of a flat body, the whole.
+  double fan_effort = 0.06;
+  /// It is to tell ways apart, so to this relative tolerance; ways longer by that part than the shortest are corrected,
+  /// too.
+  double fan_tolerance = 1e-7;
+  double fan_rivals = 1e-6;
 };
 
 inline constexpr LadderRules kLadderRules;

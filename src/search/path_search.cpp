@@ -9,6 +9,9 @@
 //                                                                                           sharp_bends
 //   fields  no path yet; start_failed, once;            distances marched from both ends,   the same
 //           sharp_bends that the table has left         on cells of h, h/2, h/4, ...
+//   fan     no path yet, before cells get dear; any     all geodesics from the start, as    coarse_cells
+//           doubt about a path, and shorter ones that   far as the path is long
+//           could leave the box, on a 2-surface
 //   walks   no path yet, before cells get dear, and     steps from both ends, random ones   sheets_not_told,
 //           where there are none                        where those are stuck               cells_spent, random_search
 //   closer  coarse_cells, sharp_bends                   this search, in the part of the     those of that search
@@ -20,8 +23,8 @@
 //                                                       and its border
 // clang-format on
 //
-// Where there are two ways to the same end the cheaper one comes first: walks, which cost about as much as two million
-// cells, before finer cells than that.
+// Where there are two ways to the same end the cheaper one comes first: a fan and walks before finer cells that cost
+// more.
 #include "search/path_search.hpp"
 
 #include <algorithm>
@@ -40,8 +43,8 @@
 namespace taut::detail {
 namespace {
 
-constexpr Rung kLadder[] = {Rung::faces,  Rung::table, Rung::fields, Rung::walks,
-                            Rung::closer, Rung::wider, Rung::border};
+constexpr Rung kLadder[] = {Rung::faces, Rung::table,  Rung::fields, Rung::fan,
+                            Rung::walks, Rung::closer, Rung::wider,  Rung::border};
 
 /// May paths on the surface have to cross edges.
 bool has_edges(const Surface& surface) {
@@ -105,7 +108,7 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
     case Rung::table: return finder_.has_table() && !now.first && !now.tried(rung);
     case Rung::fields: {
       // On which side of a spike a way begins no landmark tells.
-      const bool past_spikes = now.doubts.has(Doubt::sharp_bends) && !now.marched;
+      const bool past_spikes = now.tried(Rung::table) && !now.marched && now.doubts.has(Doubt::sharp_bends);
       const bool wanted = !now.best || now.doubts.has(Doubt::start_failed) || past_spikes;
       return levels().exist() && now.level < num_levels() && wanted && is_affordable(now);
     }
@@ -114,8 +117,9 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
       return scope_ != Scope::part && !marches_between_centres(options_) && now.has_path() && !now.tried(rung) &&
              now.doubts.has_any({Doubt::coarse_cells, Doubt::sharp_bends}) && has_smaller_part(*now.best);
     case Rung::wider:
-      return whole && levels().endless() && !now.window_shut &&
+      return whole && levels().endless() && !now.window_shut && !now.proved &&
              (now.has_path() ? !have_room(*now.best, now.doublings) : now.is_apart());
+    case Rung::fan: return fan_can_help(now);
     case Rung::border: {
       const bool met = now.best && (now.best->status == Status::left_domain || (now.has_path() && now.doubts.any()));
       return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
@@ -132,6 +136,7 @@ void PathSearch::climb(Rung rung, Inquiry& now, Corrector& corrector) const {
     case Rung::walks: return walk(now, corrector);
     case Rung::closer: return look_closer(now, corrector);
     case Rung::wider: return look_wider(now, corrector);
+    case Rung::fan: return spread_fan(now, corrector);
     case Rung::border: return go_along_border(now);
   }
 }
@@ -162,23 +167,32 @@ int PathSearch::num_levels() const { return marches_between_centres(options_) ? 
 /// Where the last cells led nowhere: may the next be made, and is there nothing cheaper to try before.
 bool PathSearch::is_affordable(const Inquiry& now) const {
   if (!now.blocked || now.best) return true;
+  if (fan_can_help(now)) return false;
   if (scope_ == Scope::window) return now.next_cells <= kLadderRules.most_cells_in_window;
   const bool fitted = surface_.samples() != nullptr;
   if (now.next_cells > (fitted ? kLadderRules.most_fitted_cells : kLadderRules.most_cells)) return false;
   return now.tried(Rung::walks) || now.next_cells <= kLadderRules.most_cells_before_walks;
 }
 
-/// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest. Sharp
-/// bends alone are no reason where finer cells for the part of the box that matters would be hardly finer.
-Doubts PathSearch::doubts_of_cells(const PathResult& found, const Starts& starts, int level) const {
+/// A fan costs some 10 to 1,000 ms. It comes where finer cells for a part of the box cannot lift the doubts about a
+/// path, and where the next cells are dear and there is no path yet.
+bool PathSearch::fan_can_help(const Inquiry& now) const {
+  const bool smooth = surface_.dim() == 3 && surface_.codim() == 1 && !kinked_;
+  const bool paper = marches_between_centres(options_) || options_.method == CorrectionMethod::grid;
+  if (scope_ != Scope::whole || !smooth || paper || now.tried(Rung::fan)) return false;
+  if (!now.has_path()) {
+    return !now.best && now.blocked && now.next_cells > kLadderRules.most_cells_before_fan;
+  }
+  const bool may_be_beyond = levels().endless() && !have_room(*now.best, 0);
+  return (now.doubts.any() || may_be_beyond) && !can_help(Rung::closer, now);
+}
+
+/// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest.
+Doubts PathSearch::doubts_of_cells(const PathResult& found, int level) const {
   if (!found.corrected) return {};
   if (!levels().resolved()) return {Doubt::coarse_cells};
   if (found.status != Status::ok) return {};
-  const bool local = box_of_shorter_paths(found.from, found.to, found.length).extent().maxCoeff() <
-                     kLadderRules.local_part * levels().box().extent().maxCoeff();
-  const double marched = starts.paths.front().length;
-  const bool mismarched = std::abs(marched - found.length) > kLadderRules.mismarched * found.length;
-  if ((local || mismarched) && finder_.bends_sharply(level, found.points)) return {Doubt::sharp_bends};
+  if (finder_.bends_sharply(level, found.points)) return {Doubt::sharp_bends};
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "search/corrector.hpp"
@@ -12,6 +13,7 @@
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
+#include "taut/fan/geodesic_fan.hpp"
 #include "taut/search/path_options.hpp"
 #include "taut/search/path_result.hpp"
 #include "taut/surface/surface.hpp"
@@ -57,11 +59,15 @@ class PathSearch {
   void walk(Inquiry& now, Corrector& corrector) const;
   void look_closer(Inquiry& now, Corrector& corrector) const;
   void look_wider(Inquiry& now, Corrector& corrector) const;
+  void spread_fan(Inquiry& now, Corrector& corrector) const;
   void go_along_border(Inquiry& now) const;
 
   [[nodiscard]] int num_levels() const;
   [[nodiscard]] bool is_affordable(const Inquiry& now) const;
-  [[nodiscard]] Doubts doubts_of_cells(const PathResult& found, const Starts& starts, int level) const;
+  [[nodiscard]] Doubts doubts_of_cells(const PathResult& found, int level) const;
+  [[nodiscard]] bool fan_can_help(const Inquiry& now) const;
+  [[nodiscard]] std::pair<double, bool> cells_for_fan() const;
+  void add_ray(const FanHit& way, const Inquiry& now, Starts& starts) const;
   [[nodiscard]] Box part_of_shorter(const PathResult& found) const;
   [[nodiscard]] bool has_smaller_part(const PathResult& found) const;
   [[nodiscard]] Box window(int doublings) const;

@@ -1,14 +1,22 @@
 // The rungs of path_search.cpp: what each does, and which doubts it leaves.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
+#include "core/stopwatch.hpp"
 #include "curve/polyline.hpp"
+#include "fan/fan_answers.hpp"
 #include "search/ladder_rules.hpp"
 #include "search/path_search.hpp"
 #include "taut/cells/find_box.hpp"
 #include "taut/core/error.hpp"
+#include "taut/curve/exponential_map.hpp"
+#include "taut/fan/geodesic_fan.hpp"
 
 namespace taut::detail {
 namespace {
@@ -104,7 +112,7 @@ void PathSearch::march_fields(Inquiry& now, Corrector& corrector) const {
   const bool sure = correct(now, corrector, starts, last, result) || only;
   const bool better = !now.best || is_better(result, *now.best);
   if (better) now.best = std::move(result);
-  if (better || !now.marched) now.of_cells = doubts_of_cells(*now.best, starts, level);
+  if (better || !now.marched) now.of_cells = doubts_of_cells(*now.best, level);
   now.marched = true;
   now.counts = now.counts || !coarse || now.has_path();
   if (second) now.level = num_levels();
@@ -209,6 +217,66 @@ void PathSearch::look_wider(Inquiry& now, Corrector& corrector) const {
   }
   now.doubts.add(Doubt::beyond_window);
   now.window_shut = true;
+}
+
+/// The size of the cells that bound a fan's panels, and do those follow the surface's bends. A size that was asked for
+/// may be far too coarse.
+std::pair<double, bool> PathSearch::cells_for_fan() const {
+  if (options_.cell == 0) return {levels().size(0), levels().resolved()};
+  CellLevels chosen(surface_, {.method = options_.grid}, context_);
+  chosen.prepare(points_);
+  (void)chosen.cells(0, points_);
+  return {std::min(levels().size(0), chosen.size(0)), chosen.resolved()};
+}
+
+/// All geodesics from the start, in every direction: the least that meets the end is the shortest path, whatever the
+/// cells have missed, and where none does there is no path. Of what is smaller than the cells that bound its panels a
+/// fan may know nothing, so that doubt stays.
+void PathSearch::spread_fan(Inquiry& now, Corrector& corrector) const {
+  const Stopwatch watch;
+  const LadderRules& rules = kLadderRules;
+  const auto [cell, resolved] = cells_for_fan();
+  const auto most = static_cast<Index>(rules.fan_effort * static_cast<double>(most_evaluated(surface_)));
+  const double longest =
+      now.has_path() ? (1 + rules.fan_rivals) * now.best->length : std::numeric_limits<double>::infinity();
+  Starts starts;
+  FanAnswer answer;
+  try {
+    const Vector value = Vector::Zero(1);
+    GeodesicFan fan(surface_, now.from(), value,
+                    {.tolerance = rules.fan_tolerance, .max_panel = kPanelCells * cell, .max_evaluated = most});
+    answer = ask_fan(fan, surface_, now.from(), value, now.to(), longest, context_).front();
+    const bool complete = fan.finished() && !fan.broken() && std::isinf(fan.reach());
+    const bool met = std::isfinite(std::min(answer.hit.distance, answer.hit.astray));
+    if (!now.best && complete && !met) now.give_up(Status::disconnected, Obstacle::Kind::apart_by_fan);
+    // Farther than the path that is there: then the fan does not know that one.
+    if (answer.kind == FanAnswer::Kind::proved) {
+      std::vector<FanHit> ways = fan.ways(now.to(), (1 + rules.fan_rivals) * answer.hit.distance);
+      if (ways.empty()) ways.push_back(answer.hit);  // it has not left the domain
+      for (const FanHit& way : ways) add_ray(way, now, starts);
+    }
+  } catch (const SingularPoint&) {  // no geodesics leave from there
+  }
+  now.blank.seconds.march += watch.seconds();
+  if (starts.paths.empty()) return;
+  PathResult result;
+  const bool sure = correct(now, corrector, starts, true, result);
+  const double error = answer.hit.error + result.length_error + rules.fan_rivals * answer.hit.distance;
+  if (!sure || result.status != Status::ok || std::abs(result.length - answer.hit.distance) > error) return;
+  now.best = std::move(result);
+  now.doubts = {};
+  now.proved = true;
+  if (!resolved) now.doubts.add(Doubt::coarse_cells);
+}
+
+/// A geodesic of a fan as a start.
+void PathSearch::add_ray(const FanHit& way, const Inquiry& now, Starts& starts) const {
+  ExponentialMap rays(surface_, {.tolerance = 1e-12, .conjugate = false});
+  ExponentialResult ray = rays.trace(Vector(way.foot), Vector(way.departure), way.distance, context_);
+  if (ray.status != Status::ok || ray.points.cols() < 2) return;
+  ray.points.col(0) = now.from();
+  ray.points.rightCols(1) = now.to();
+  starts.paths.push_back({way.distance, std::move(ray.points)});
 }
 
 /// Where a domain cuts the surface the shortest path may run along the cut: it is the shorter one, or the only one.

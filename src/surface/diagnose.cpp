@@ -63,7 +63,7 @@ Points around(const Vector& x, double h) {
 /// What the values around x say about one equation that touches zero there without crossing it.
 std::optional<RankDiagnosis::Fault> touching(const Vector& far, const Vector& near) {
   const bool one_sided = (far.array() > 0).all() || (far.array() < 0).all();
-  if (!one_sided || !far.allFinite()) return std::nullopt;
+  if (!one_sided) return std::nullopt;
   const double growth = far.cwiseAbs().mean() / near.cwiseAbs().mean();  // over twice the distance
   if (growth > 3 && growth < 6) return RankDiagnosis::Fault::squared;
   if (growth > 1.6 && growth <= 3) return RankDiagnosis::Fault::root;
@@ -85,6 +85,10 @@ std::vector<RankDiagnosis::Finding> find_faults(const ImplicitFunction& function
   std::vector<Index> independent;
   Eigen::MatrixXd basis(d, 0);  // unit gradients of the independent equations
   for (Index i = 0; i < k; ++i) {
+    if (!far.row(i).allFinite()) {
+      findings.push_back({Fault::undefined, i, {}});
+      continue;
+    }
     if (const auto fault = touching(far.row(i), near.row(i))) {
       findings.push_back({*fault, i, {}});
       continue;
@@ -179,7 +183,9 @@ std::optional<RankDiagnosis> diagnose_rank(const ImplicitFunction& function, con
     const bool all_over =
         std::ranges::all_of(elsewhere, [&](const auto& findings) { return std::ranges::any_of(findings, is_this); });
     // An equation that crosses zero elsewhere is no square: here it has a cusp, too thin to be met on its other side.
-    if (!all_over && finding.fault != RankDiagnosis::Fault::dependent) finding.fault = RankDiagnosis::Fault::singular;
+    const bool here_only =
+        finding.fault != RankDiagnosis::Fault::dependent && finding.fault != RankDiagnosis::Fault::undefined;
+    if (!all_over && here_only) finding.fault = RankDiagnosis::Fault::singular;
   }
   return result;
 }
@@ -224,6 +230,10 @@ std::string RankDiagnosis::text() const {
     case Fault::root:
       text += counted(alike) + (alike.size() == 1 ? " does" : " do") + " not change sign" + where +
               ", as if written as the root of a sum of squares; write the parts as equations of their own";
+      break;
+    case Fault::undefined:
+      text += counted(alike) + (alike.size() == 1 ? " is" : " are") + " not defined on every side of " +
+              detail::describe(point) + ", as a root or a logarithm is not: take a point further in";
       break;
     case Fault::singular:
       text += "the gradient of " + counted(alike) + " vanishes or is undefined" + where +

@@ -89,6 +89,23 @@ TEST(GeodesicFan, UnrollsTheCylinderBothWaysRound) {
   }
 }
 
+/// Opposite points have two shortest ways, and each turn more makes another two.
+TEST(GeodesicFan, NamesAllWaysToAPoint) {
+  const Surface cylinder = parse_surface("x^2+y^2=1", {.dim = 3});
+  GeodesicFan fan = fan_from(cylinder, Eigen::Vector3d(1, 0, 0), {.max_panel = 0.5});
+  fan.extend(4);
+  const Eigen::Vector3d q(-1, 0, 1);
+  const std::vector<FanHit> ways = fan.ways(q, 3.5);
+  ASSERT_EQ(ways.size(), 2U);
+  const double sideways = pi / std::hypot(pi, 1);
+  for (const FanHit& way : ways) {
+    EXPECT_NEAR(way.distance, std::hypot(pi, 1), 1e-11);
+    EXPECT_NEAR(std::abs(way.departure.y()), sideways, 1e-10);
+  }
+  EXPECT_NEAR(ways[0].departure.y(), -ways[1].departure.y(), 1e-10);
+  EXPECT_TRUE(fan.ways(q, 3.2).empty());
+}
+
 /// Points at or near the cut locus, where a longer geodesic is easily taken for the shortest.
 TEST(GeodesicFan, IsTheGlobalMinimumAtTheCutLocusOfTheReferences) {
   std::ifstream file(TAUT_TEST_DATA "/near_cut_locus.txt");

@@ -59,15 +59,51 @@ TEST(PathSearch, CoarseCellsAreLookedAtCloser) {
   EXPECT_LT(path.cell, 0.5);
 }
 
-// On a parabolic cylinder the way round the fold leaves the first window.
-TEST(PathSearch, ASurfaceWithoutEndIsLookedAtThroughWiderWindows) {
+// On a parabolic cylinder the way round the fold leaves the first window; no geodesic from the start is shorter.
+TEST(PathSearch, OnASurfaceWithoutEndTheFanGoesAsFarAsThePath) {
   const PathResult path =
       shortest_path(parse_surface("x=10*z^2", {.dim = 3}), Eigen::Vector3d(10, 0, 1), Eigen::Vector3d(10, 0, -1));
   ASSERT_EQ(path.status, Status::ok) << path.message;
-  EXPECT_EQ(path.rungs.back().rung, Rung::wider);
+  EXPECT_EQ(path.rungs.back().rung, Rung::fan);
+  EXPECT_TRUE(path.unique);
   // Twice the arc of x = 10 z^2 from z = 0 to 1.
   const double arc = std::sqrt(401.0) / 2 + std::asinh(20.0) / 40;
   EXPECT_NEAR(path.length, 2 * arc, 1e-8 * arc);
+}
+
+Surface narrow_neck() {
+  return parse_surface("x^2+y^2=z^2+0.001").with_box({Vector::Constant(3, -1.5), Vector::Constant(3, 1.5)});
+}
+
+// The two ways past a neck narrower than a cell differ by 0.2 %. Truth: Clairaut's integrals, Simpson's rule on 4,000
+// intervals.
+TEST(PathSearch, PastANarrowNeckTheFanTellsWhichWay) {
+  const Surface hyperboloid = narrow_neck();
+  const PathResult path =
+      shortest_path(hyperboloid, Eigen::Vector3d(0.6984953274110905, 0.6695554451247852, 0.9670575042423154),
+                    Eigen::Vector3d(-0.8380504514615447, -1.0520671595463014, -1.34468355660011));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_NEAR(path.length, 3.26757368026, 1e-9);
+  EXPECT_EQ(path.rungs.back().rung, Rung::fan);
+  EXPECT_TRUE(path.unique);
+}
+
+// Through the neck all the way round: both ways are as short, by symmetry.
+TEST(PathSearch, TheFanSeesThatTwoWaysAreAsShort) {
+  const Surface hyperboloid = narrow_neck();
+  const double r = std::sqrt(1.001);
+  const PathResult path = shortest_path(hyperboloid, Eigen::Vector3d(r, 0, 1), Eigen::Vector3d(-r, 0, -1));
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_FALSE(path.unique);
+  EXPECT_TRUE(path.tied);
+}
+
+// Cells would have to be smaller than the gap; every geodesic from the start comes back to it.
+TEST(PathSearch, OfTwoShellsTheFanStaysOnOne) {
+  const Surface shells = parse_surface("(x^2+y^2+z^2-1)*(x^2+y^2+z^2-1.0201)=0");
+  const PathResult path = shortest_path(shells, Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1.01, 0));
+  EXPECT_EQ(path.status, Status::disconnected) << path.message;
+  EXPECT_EQ(path.obstacle.kind, Obstacle::Kind::apart_by_fan);
 }
 
 TEST(PathSearch, OverEdgesTheGraphOfFacesAnswers) {

@@ -1,5 +1,6 @@
 #include "taut/surface/diagnose.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -109,6 +110,13 @@ TEST(DiagnoseRank, ACuspIsNoSquare) {
   }
   const RankDiagnosis lemon = diagnose("1.2*x^2+1.2*z^2=5*(y+0.5)^3*(0.5-y)^3", Eigen::Vector3d(0, 0.5, 0));
   EXPECT_EQ(lemon.findings[0].fault, Fault::singular);
+}
+
+TEST(DiagnoseRank, SaysWhereAFormulaEnds) {
+  // z = x^(3/2) has the gradient (0, 0, 1) at 0, and no value beyond.
+  const RankDiagnosis found = diagnose("z=x^(3/2)", Eigen::Vector3d::Zero());
+  EXPECT_EQ(found.findings[0].fault, Fault::undefined);
+  EXPECT_THAT(found.text(), testing::HasSubstr("not defined on every side of (0, 0, 0)"));
 }
 
 TEST(DiagnoseRank, RefusesBadPoints) {

@@ -19,7 +19,8 @@ struct FanOptions {
   double max_panel = 0;
   /// Panels to be kept at most; about 3.7 kB each.
   Index max_patches = 60000;
-  /// Points at which F may be evaluated, about: what bounds the time where F is slow.
+  /// Points at which F may be evaluated, about, and panels that may be looked at while rays are compared with shorter
+  /// ones: what bounds the time.
   Index max_evaluated = 500'000'000;
 };
 
@@ -88,6 +89,10 @@ class GeodesicFan {
   /// The least distance on the fan of each target (3 x n, on the surface), on all cores. Exact where `distance` <=
   /// min(reach(), bound(target)) and `astray` is no less; an upper bound elsewhere. Throws Cancelled.
   [[nodiscard]] std::vector<FanHit> locate(const PointsIn& targets, const Context& context = {}) const;
+  /// The geodesics of the fan that meet q (on the surface) and are no longer than `longest`, each once, shortest first;
+  /// of those that may have left the surface's domain none. Every shortest way is among them where `locate` is exact;
+  /// of longer ones those that a strip was given up for are not.
+  [[nodiscard]] std::vector<FanHit> ways(const Eigen::Vector3d& q, double longest) const;
 
  private:
   struct Impl;

@@ -14,6 +14,7 @@ struct Obstacle {
     none,
     apart,             ///< the points lie on different components: bounds of the cells prove it for the box that was
                        ///< looked through (on a fitted surface they are a careful estimate)
+    apart_by_fan,      ///< they do: all geodesics from the start, followed to their end, meet the end nowhere
     apart_by_walks,    ///< they seem to: without cells, random searches from both ends do not meet
     no_way,            ///< no way was found, for none of the reasons below; that there is none is not proved
     sheets_not_told,   ///< cells cannot tell the sheets of the surface apart, or the points lie on different components
@@ -40,6 +41,7 @@ struct Obstacle {
   switch (kind) {
     case Obstacle::Kind::none: return "none";
     case Obstacle::Kind::apart: return "apart";
+    case Obstacle::Kind::apart_by_fan: return "apart_by_fan";
     case Obstacle::Kind::apart_by_walks: return "apart_by_walks";
     case Obstacle::Kind::no_way: return "no_way";
     case Obstacle::Kind::sheets_not_told: return "sheets_not_told";

@@ -17,6 +17,7 @@ enum class Rung : std::uint8_t {
   walks,   ///< without cells, step by step from both ends
   closer,  ///< finer cells in the part of the box that shorter paths can visit
   wider,   ///< a wider window on a surface without end
+  fan,     ///< all geodesics from the start, as far as the path is long
   border,  ///< along the border of a domain
 };
 
@@ -29,6 +30,7 @@ enum class Rung : std::uint8_t {
     case Rung::walks: return "walks";
     case Rung::closer: return "closer";
     case Rung::wider: return "wider";
+    case Rung::fan: return "fan";
     case Rung::border: return "border";
   }
   return "unknown";

@@ -17,7 +17,8 @@ struct RankDiagnosis {
     dependent,  ///< its gradient is a combination of those of `others`
     squared,    ///< it touches zero without crossing it and grows quadratically: written as a square
     root,  ///< it touches zero without crossing it and grows linearly: a root of a sum of squares, an absolute value
-    singular,  ///< its gradient vanishes, or is undefined, at this point: an apex, a cusp, a node
+    undefined,  ///< it has no value on some sides of this point: the edge of where it is defined
+    singular,   ///< its gradient vanishes, or is undefined, at this point: an apex, a cusp, a node
   };
   struct Finding {
     Fault fault = Fault::singular;
