@@ -33,7 +33,7 @@ PointCloud plate_cloud(const Plate& plate, std::uint64_t seed = 1) {
     for (Index i = 0; i < kSide * kSide; ++i, ++at) {
       const double x = plate.random ? 20 * uniform() - 10 : static_cast<double>(i % kSide) - 10;
       const double y = plate.random ? 20 * uniform() - 10 : static_cast<double>(i / kSide) - 10;
-      const double z = plate.gap * (0.5 * side + plate.noise * uniform.normal());
+      const double z = plate.gap * ((plate.one_face ? 0 : 0.5 * side) + plate.noise * uniform.normal());
       if (plate.bend == 0) {
         cloud.points.col(at) << x, y, z;
         cloud.normals.col(at) << 0, 0, side;
@@ -118,6 +118,33 @@ TEST(Sheets, FacesThatBecomeOneSheetAreTold) {
   EXPECT_GT(model.report.merged_sheets.count, cloud.size() / 2);
   EXPECT_NE(notes.find("two sheets"), std::string::npos) << notes;
   EXPECT_NE(fit_doubt(make_surface(FitModel(model))), "");
+}
+
+/// Noise of 0.15 to 0.3 gaps: whatever becomes of the faces, a fit that does not keep them apart says so.
+TEST(Sheets, NoiseThatBlursTheFacesIsTold) {
+  for (const bool random : {false, true}) {
+    for (const Plate& plate : {Plate{.gap = 0.3, .noise = 0.15, .random = random},
+                               Plate{.gap = 0.6, .noise = 0.2, .bend = 0.1, .random = random},
+                               Plate{.gap = 0.6, .noise = 0.3, .random = random},
+                               Plate{.gap = 1, .noise = 0.3, .bend = 0.05, .random = random}}) {
+      PointCloud cloud = plate_cloud(plate);
+      cloud.normals.resize(3, 0);
+      EXPECT_NE(fit_doubt(make_surface(fit_surface(cloud, {.method = FitMethod::local}))), "")
+          << "gap " << plate.gap << " noise " << plate.noise << " random " << random;
+    }
+  }
+}
+
+/// One sheet, however noisy, raises no doubt.
+TEST(Sheets, NoiseOfOneSheetIsNotTakenForTwo) {
+  for (const bool random : {false, true}) {
+    for (const double noise : {0.1, 0.3}) {
+      PointCloud cloud = plate_cloud({.gap = 1, .noise = noise, .bend = 0.1, .random = random, .one_face = true});
+      cloud.normals.resize(3, 0);
+      EXPECT_EQ(fit_doubt(make_surface(fit_surface(cloud, {.method = FitMethod::local}))), "")
+          << "noise " << noise << " random " << random;
+    }
+  }
 }
 
 }  // namespace

@@ -180,7 +180,8 @@ LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options,
       by_size && !options.smoothing ? 0 : report.spacing * detail::relative_noise(samples.points, normals, tree);
   const std::shared_ptr<const ImplicitFunction> function = detail::make_blended_function(model);
   measure_residual(samples.points, merged.merged_from, *function, report, context);
-  report.merged_sheets = detail::find_merged_sheets(samples.points, normals, tree, *function, context);
+  report.merged_sheets =
+      detail::find_merged_sheets(samples.points, normals, tree, *function, cloud.faces.cols() > 0, context);
   report.merged_sheets.at = merged.merged_from[static_cast<std::size_t>(report.merged_sheets.at)];
   if (report.merged_sheets.count > 0) context.tell(detail::doubt(report.merged_sheets, cloud.points));
   return model;

@@ -4,6 +4,8 @@
 #include <memory>
 
 #include "surface/describe.hpp"
+#include "surface/normals/bridged_gap.hpp"
+#include "surface/normals/layered_noise.hpp"
 #include "surface/normals/sheet_split.hpp"
 
 // Between the faces of a plate F is negative, between two solids positive, and in the middle about as far from 0 as the
@@ -26,10 +28,9 @@ constexpr double kFew = 0.02;
 /// Measured: random plates with tunnels 1.5 % and more; the wings of a feline 0.15 %, a raw range image 0.005 %.
 constexpr double kFewOfAll = 0.01;
 
-}  // namespace
-
-MergedSheets find_merged_sheets(const Points& points, const Points& normals, const KdTree& tree,
-                                const ImplicitFunction& function, const Context& context) {
+/// Where samples can be told apart one by one.
+MergedSheets find_unparted(const Points& points, const Points& normals, const KdTree& tree,
+                           const ImplicitFunction& function, const Context& context) {
   const SheetSplit split(points, tree, context);
   if (!split.any()) return {};
   const std::unique_ptr<Evaluator> evaluator = function.make_evaluator();
@@ -63,6 +64,17 @@ MergedSheets find_merged_sheets(const Points& points, const Points& normals, con
   if (static_cast<double>(merged.count) <= kFewOfAll * static_cast<double>(points.cols())) return {};
   merged.gap = gaps / static_cast<double>(merged.count);
   return merged;
+}
+
+}  // namespace
+
+MergedSheets find_merged_sheets(const Points& points, const Points& normals, const KdTree& tree,
+                                const ImplicitFunction& function, bool of_mesh, const Context& context) {
+  const MergedSheets unparted = find_unparted(points, normals, tree, function, context);
+  if (unparted.count > 0 || of_mesh) return unparted;
+  const MergedSheets bridged = find_bridged_gap(points, normals, tree, function, context);
+  if (bridged.count > 0) return bridged;
+  return find_layered_noise(points, normals, tree, context);
 }
 
 std::string doubt(const MergedSheets& merged, const Points& samples) {

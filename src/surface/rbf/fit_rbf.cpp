@@ -164,7 +164,7 @@ RbfModel fit_rbf(const PointCloud& cloud, const RbfOptions& options, const Conte
   measure_residual(merged.points, chosen, merged.merged_from, function, model.report, context);
   const KdTree world_tree(merged.points);
   MergedSheets& sheets = model.report.merged_sheets;
-  sheets = detail::find_merged_sheets(merged.points, normals, world_tree, function, context);
+  sheets = detail::find_merged_sheets(merged.points, normals, world_tree, function, cloud.faces.cols() > 0, context);
   sheets.at = merged.merged_from[static_cast<std::size_t>(sheets.at)];
   if (sheets.count > 0) context.tell(detail::doubt(sheets, cloud.points));
   return model;
