@@ -299,5 +299,26 @@ TEST(FitSurface, NamesAPointFarFromAllOthers) {
   }
 }
 
+/// Across the sheet the surface ends at half of what it reaches along it: what F does farther off is of no concern.
+TEST(LocalFit, TheDomainIsFlat) {
+  const LocalFitModel model = fit_local(test::sphere_cloud(3, 2000));
+  const Surface surface = make_surface(std::make_shared<const LocalFitModel>(model));
+  const auto evaluator = surface.domain()->make_evaluator();
+  const auto inside = [&](const Vector& x) {
+    double value = 0;
+    evaluator->evaluate({.n = 1, .x = x.data(), .value = &value});
+    return value;
+  };
+  for (const Index i : {3, 700, 1999}) {
+    const Vector at = model.samples.points.col(i);
+    const Vector normal = model.samples.normals.col(i);
+    const double reach = model.support(i);
+    EXPECT_NEAR(inside(at), reach, 1e-15);
+    EXPECT_LT(inside(at + 0.7 * reach * normal), 0);
+    EXPECT_LT(inside(at - 0.7 * reach * normal), 0);
+    EXPECT_GT(inside(at + 0.3 * reach * normal), 0);
+  }
+}
+
 }  // namespace
 }  // namespace taut

@@ -11,6 +11,10 @@
 namespace taut {
 namespace {
 
+/// Across the sheet the surface ends at half the support. Bubbles off the sheet lie at 0.6 to 1 of it; the surface
+/// itself where a hole of the samples is filled at up to 0.3, if it bends to a radius of two spacings.
+constexpr double kFlatness = 2;
+
 void require_consistent(const LocalFitModel& model) {
   const Index d = model.centres.rows();
   const Index size = static_cast<Index>(d == 2 ? detail::Cubic<2>::kSize : detail::Cubic<3>::kSize);
@@ -29,7 +33,8 @@ Surface make_surface(std::shared_ptr<const LocalFitModel> model) {
   require_consistent(*model);
   SurfaceExtras extras;
   extras.samples = std::shared_ptr<const PointCloud>(model, &model->samples);
-  extras.domain = detail::make_support_domain(extras.samples, model->support);
+  const bool has_normals = model->samples.normals.cols() == model->samples.size();
+  extras.domain = detail::make_support_domain(extras.samples, model->support, has_normals ? kFlatness : 1);
   const double margin = model->support.maxCoeff();
   extras.box = Box{model->samples.points.rowwise().minCoeff().array() - margin,
                    model->samples.points.rowwise().maxCoeff().array() + margin};
