@@ -29,8 +29,9 @@ namespace taut::app {
 namespace {
 
 constexpr const char* kJson = ".json";
-constexpr std::array kPathOutputs = {kJson, ".csv", ".npy", ".ply", ".obj", ".vtp", ".html", ".svg", ".png"};
-constexpr std::array kMeshOutputs = {".ply", ".obj", ".off", ".stl", ".vtp", ".html", ".svg", ".png"};
+constexpr std::array kPathOutputs = {kJson,  ".csv", ".npy",  ".ply", ".obj", ".vtp",
+                                     ".glb", ".dxf", ".html", ".svg", ".png"};
+constexpr std::array kMeshOutputs = {".ply", ".obj", ".off", ".stl", ".vtp", ".glb", ".html", ".svg", ".png"};
 /// Ends of so many paths are marked by dots; of more they only clutter the picture.
 constexpr std::size_t kMostEndsMarked = 200;
 constexpr double kDotSize = 0.55;

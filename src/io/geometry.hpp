@@ -32,6 +32,8 @@ void write_obj(OutputFile& out, const Geometry& geometry);
 void write_off(OutputFile& out, const Geometry& geometry);
 void write_stl(OutputFile& out, const Geometry& geometry);
 void write_vtp(OutputFile& out, const Geometry& geometry);
+void write_glb(OutputFile& out, const Geometry& geometry);
+void write_dxf(OutputFile& out, const Geometry& geometry);
 void write_json(OutputFile& out, const Geometry& geometry);
 void write_xyz(OutputFile& out, const Geometry& geometry);
 void write_csv(OutputFile& out, const Geometry& geometry);

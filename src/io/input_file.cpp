@@ -90,6 +90,7 @@ std::string_view recognise(std::string_view bytes) {
       Magic{"ply\r"sv, "a PLY file"},
       Magic{"\x93NUMPY"sv, "a NumPy array"},
       Magic{"# .PCD"sv, "a PCD file"},
+      Magic{"LASF"sv, "a LAS file"},
       Magic{"OFF\n"sv, "an OFF file"},
       Magic{"OFF\r"sv, "an OFF file"},
       Magic{"OFF "sv, "an OFF file"},

@@ -33,6 +33,10 @@ constexpr std::array kFormats = {
     Format{".csv", "", true, nullptr, ColumnFormat::any},
     Format{".tsv", "", true, nullptr, ColumnFormat::any},
     Format{".npy", "a NumPy array", false, read_npy},
+    Format{".las", "a LAS file", false, read_las},
+    Format{".vtk", "a legacy VTK file", false, read_vtk_points},
+    Format{".vtp", "an XML file", false, read_vtk_xml},
+    Format{".vtu", "an XML file", false, read_vtk_xml},
 };
 
 constexpr std::string_view kCompressed = ".gz";
@@ -57,6 +61,12 @@ Format format_of(const std::filesystem::path& path) {
   const auto* format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.extension == extension; });
   if (format != kFormats.end()) return *format;
+  if (extension == ".laz") {
+    throw IoError(path.string(), "compressed LAS; unpack it first: las2las -i in.laz -o out.las, or pdal translate");
+  }
+  if (extension == ".e57") {
+    throw IoError(path.string(), "E57 is not read; convert it first: pdal translate in.e57 out.las, or CloudCompare");
+  }
   const std::string problem = extension.empty() ? "the name has no extension" : "unknown extension " + quote(extension);
   throw IoError(path.string(), problem + "; point clouds and meshes are read from " + known_extensions() +
                                    " (also compressed, as .ply.gz)");

@@ -22,6 +22,9 @@ namespace taut::detail {
 [[nodiscard]] PointCloud read_stl(const InputFile& file);
 [[nodiscard]] PointCloud read_pcd(const InputFile& file);
 [[nodiscard]] PointCloud read_npy(const InputFile& file);
+[[nodiscard]] PointCloud read_las(const InputFile& file);
+[[nodiscard]] PointCloud read_vtk_points(const InputFile& file);
+[[nodiscard]] PointCloud read_vtk_xml(const InputFile& file);
 
 /// Lines of numbers: what `.xyz`, `.pts`, `.asc`, `.txt`, `.pwn`, `.csv` and `.tsv` have in common.
 enum class ColumnFormat {

@@ -20,6 +20,7 @@ struct OutputFormat {
   bool lines;
   bool clouds;
   bool any_dimension;
+  bool finite = false;  // has no word for infinity and not-a-number
 };
 
 void write_points_only(OutputFile& out, const Geometry& geometry) { write_npy(out, geometry.points); }
@@ -30,6 +31,8 @@ constexpr std::array kFormats = {
     OutputFormat{".off", write_off, true, false, true, false},
     OutputFormat{".stl", write_stl, true, false, false, false},
     OutputFormat{".vtp", write_vtp, true, true, true, false},
+    OutputFormat{".glb", write_glb, true, true, false, false, true},
+    OutputFormat{".dxf", write_dxf, false, true, false, false, true},
     OutputFormat{".xyz", write_xyz, false, false, true, false},
     OutputFormat{".csv", write_csv, true, true, true, true},
     OutputFormat{".npy", write_points_only, true, true, true, true},
@@ -80,6 +83,9 @@ void write_geometry(const std::filesystem::path& path, const OutputFormat& forma
   if (!format.any_dimension && (geometry.dim() < 2 || geometry.dim() > 3) && geometry.size() > 0) {
     throw IoError(path.string(), std::string(format.extension) + " holds points in space, these have " +
                                      std::to_string(geometry.dim()) + " coordinates; write .csv, .npy or .json");
+  }
+  if (format.finite && !geometry.points.allFinite()) {
+    throw InvalidArgument("a point is not finite, which " + std::string(format.extension) + " has no word for");
   }
   OutputFile out(path);
   format.write(out, geometry);

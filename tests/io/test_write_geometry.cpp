@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <sstream>
 
 #include "io/read_text.hpp"
 #include "taut/io/read_points.hpp"
@@ -251,6 +253,92 @@ TEST(WriteVtp, LinesAndClouds) {
   const std::string cloud = test::file_bytes(folder.path() / "b.vtp");
   EXPECT_NE(cloud.find("NumberOfVerts=\"5\""), std::string::npos);
   EXPECT_EQ(vtp_array<double>(cloud, "Points").size(), 15U);  // planar points are given z = 0
+}
+
+// --- .glb and .dxf ---------------------------------------------------------------------------------------------------
+
+/// As `two_lines`, within what 32-bit floats hold.
+Polylines finite_lines() {
+  Points first(3, 4);
+  first << 0, 1, 2, 3, 0.5, -1.25, 7, 1.0 / 3, 1e-9, 4, -6, 2;
+  return {.lines = {first, first.leftCols(3).array() + 0.7}, .scalars = {}};
+}
+
+TEST(WriteGlb, CurvesAreLineStripsAboutTheMiddleOfTheirBox) {
+  const TempFolder folder;
+  Polylines lines = finite_lines();
+  for (Points& line : lines.lines) line.row(0).array() += 5e6;  // more than 32-bit floats hold
+  write_polylines(folder.path() / "a.glb", lines);
+  const std::string file = test::file_bytes(folder.path() / "a.glb");
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, file.data() + at, 4);
+    return value;
+  };
+  ASSERT_EQ(file.substr(0, 4), "glTF");
+  EXPECT_EQ(word(4), 2U);
+  EXPECT_EQ(word(8), file.size());
+  const std::uint32_t json_size = word(12);
+  EXPECT_EQ(json_size % 4, 0U);
+  const auto json = nlohmann::json::parse(file.substr(20, json_size));
+  const auto& primitives = json["meshes"][0]["primitives"];
+  ASSERT_EQ(primitives.size(), 2U);
+  EXPECT_EQ(primitives[0]["mode"], 3);
+  const auto& accessor = json["accessors"][primitives[1]["attributes"]["POSITION"].get<std::size_t>()];
+  EXPECT_EQ(accessor["count"], 3);
+  EXPECT_EQ(json["buffers"][0]["byteLength"], word(20 + json_size));
+  const std::size_t first = 28 + json_size + accessor["byteOffset"].get<std::size_t>();
+  for (std::size_t i = 0; i < 3; ++i) {
+    float x = 0;
+    std::memcpy(&x, file.data() + first + 4 * i, 4);
+    const double middle = json["nodes"][0]["translation"][i];
+    EXPECT_NEAR(static_cast<double>(x) + middle, lines.lines[1](static_cast<Index>(i), 0), 1e-6);
+    EXPECT_GE(x, accessor["min"][i].get<float>());
+    EXPECT_LE(x, accessor["max"][i].get<float>());
+  }
+}
+
+TEST(WriteGlb, MeshesHaveIndices) {
+  const TempFolder folder;
+  write_mesh(folder.path() / "a.glb", octahedron());
+  const std::string file = test::file_bytes(folder.path() / "a.glb");
+  std::uint32_t json_size = 0;
+  std::memcpy(&json_size, file.data() + 12, 4);
+  const auto json = nlohmann::json::parse(file.substr(20, json_size));
+  const auto& primitive = json["meshes"][0]["primitives"][0];
+  EXPECT_EQ(primitive["mode"], 4);
+  EXPECT_EQ(json["accessors"][primitive["indices"].get<std::size_t>()]["count"], 24);
+  EXPECT_EQ(file.size(), 28 + json_size + 2 * 6 * 12 + 8 * 12);
+}
+
+TEST(WriteDxf, CurvesArePolylinesInSpace) {
+  const TempFolder folder;
+  const Polylines lines = finite_lines();
+  write_polylines(folder.path() / "a.dxf", lines);
+  std::istringstream in(test::file_bytes(folder.path() / "a.dxf"));
+  int polylines = 0;
+  int vertices = 0;
+  std::vector<double> x;
+  std::string entity;
+  for (std::string code, value; std::getline(in, code) && std::getline(in, value);) {
+    if (code == "0") entity = value;
+    polylines += code == "0" && value == "POLYLINE" ? 1 : 0;
+    vertices += code == "0" && value == "VERTEX" ? 1 : 0;
+    if (code == "10" && entity == "VERTEX") x.push_back(std::stod(value));
+  }
+  EXPECT_EQ(entity, "EOF");
+  EXPECT_EQ(polylines, 2);
+  EXPECT_EQ(vertices, 7);
+  ASSERT_EQ(x.size(), 7U);
+  EXPECT_EQ(x[4], lines.lines[1](0, 0));
+}
+
+TEST(WriteGeometry, InfinitePointsAreRefusedWhereTheFormatHasNone) {
+  const TempFolder folder;
+  Polylines lines = finite_lines();
+  lines.lines[1](2, 2) = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(write_polylines(folder.path() / "a.glb", lines), InvalidArgument);
+  EXPECT_THROW(write_polylines(folder.path() / "a.dxf", lines), InvalidArgument);
 }
 
 // --- Tables ----------------------------------------------------------------------------------------------------------
