@@ -201,7 +201,8 @@ Run add_exp_command(CLI::App& app) {
   command.add_option("--length", arguments->length, "how far to go; negative: the other way")->check(any_number());
   command.add_option("--rays", arguments->rays,
                      "rays p1,...,pd,v1,...,vd,s, one a line, - = stdin; writes q1,...,qd,w1,...,wd,error,status");
-  command.add_option("--tol", arguments->options.tolerance, "error a step may add (default: rounding)")
+  command
+      .add_option("--tol", arguments->options.tolerance, "error a step may add (default: rounding; 1e-9 on dense fits)")
       ->check(number_between(0, 1e-3));
   command.add_option("--steps", arguments->options.max_steps, "give up after this many steps")
       ->check(whole_number(1, 1000000000))

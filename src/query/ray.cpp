@@ -55,11 +55,23 @@ std::string explain(const ExponentialResult& result, double length) {
   return fmt::format("{}; it stops after {:.6g}, at {}", result.reason, result.length, detail::text_of(result.point));
 }
 
+/// At every sample of a dense fit third derivatives jump, and no step is exact to rounding there. Of rays from samples
+/// of a bunny, oni and fran_cut, 2,000 to 4,900 centres, all five tried stop at rounding, one of eight at 1e-9.
+ExponentialOptions options_on(const Surface& surface, ExponentialOptions options) {
+  constexpr double kOnDenseFits = 1e-9;
+  if (options.tolerance == 0 && surface.kind() == "rbf") options.tolerance = kOnDenseFits;
+  return options;
+}
+
 }  // namespace
 
 struct RaySolver::Impl {
   Impl(Surface s, const ExponentialOptions& o, Context c)
-      : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, {}, context), map(surface, options) {}
+      : surface(std::move(s)),
+        options(options_on(surface, o)),
+        context(std::move(c)),
+        levels(surface, {}, context),
+        map(surface, options) {}
 
   Surface surface;
   ExponentialOptions options;

@@ -23,7 +23,8 @@ struct RayResult : ExponentialResult {
 /// Geodesics from given points in given directions on one surface. Not for sharing between threads.
 class RaySolver {
  public:
-  /// Throws InvalidArgument for options out of range. Does no work yet.
+  /// Throws InvalidArgument for options out of range. Does no work yet. `options.tolerance` 0 stands for 1e-9 on a
+  /// dense fit (`fit_rbf`), whose third derivatives jump at its samples.
   explicit RaySolver(Surface surface, ExponentialOptions options = {}, Context context = {});
   ~RaySolver();
   RaySolver(RaySolver&&) noexcept;
