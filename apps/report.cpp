@@ -144,6 +144,9 @@ Json path_json(const Surface& surface, const PathResult& result, const PathOptio
   json["converged"] = result.corrected ? Json(result.status == Status::ok) : Json(nullptr);
   json["locally_shortest"] = result.corrected ? Json(result.locally_shortest) : Json(nullptr);
   json["index"] = has_path(result) && result.index ? Json(*result.index) : Json(nullptr);
+  const auto direction = [](const Vector& unit) { return unit.size() > 0 ? vector_json(unit) : Json(nullptr); };
+  json["start_direction"] = direction(result.start_direction);
+  json["end_direction"] = direction(result.end_direction);
   if (result.conjugate_at) json["conjugate_at"] = *result.conjugate_at;
   json["residual"] = {{"surface", number(result.residual.surface)},
                       {"geodesic_curvature", number(result.residual.geodesic_curvature)}};

@@ -392,6 +392,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   void finish(const PointsIn& start, Relaxation outcome, NewtonResult& result) {
     result.curve = SpectralCurve(kernel_.degree(), lengths_, kernel_.nodes());
     result.start_direction = result.curve.velocity(0).normalized();
+    result.end_direction = result.curve.velocity(result.curve.period()).normalized();
     result.length = check_.length;
     result.length_error = check_.length_error + rounding();
     if (outcome != Relaxation::converged || !kernel_.settled()) {

@@ -79,6 +79,7 @@ Geodesic GeodesicPolygon::geodesic(double tolerance) const {
   result.locally_shortest = index_ == 0;
   result.index = index_;
   result.start_direction = arcs_.front().start_direction;
+  result.end_direction = arcs_.back().end_direction;
   for (const NewtonResult& arc : arcs_) {
     result.residual.surface = std::max(result.residual.surface, arc.residual.surface);
     result.residual.geodesic_curvature = std::max(result.residual.geodesic_curvature, arc.residual.geodesic_curvature);

@@ -57,6 +57,12 @@ std::string on_obstacle(const PathResult& result) {
           "the surface is singular between the two points: {} its gradient falls to nothing; geodesics through a "
           "singular point are not supported",
           near(obstacle.place));
+    case Obstacle::Kind::singular_end:
+      return fmt::format(
+          "the surface is singular at ({:.4g}): a gradient vanishes there, or the equations depend on each other; take "
+          "a "
+          "point beside it",
+          fmt::join(obstacle.place, ", "));
     case Obstacle::Kind::sheets_not_told:
       return fmt::format(
           "no path was found: cells down to {:.3g} cannot tell the sheets of the surface apart, or the points lie on "

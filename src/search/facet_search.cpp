@@ -279,6 +279,7 @@ void FacetSearch::deliver(const std::vector<Found>& found, PathResult& result) c
   if (best.locally_shortest) result.index = 0;
   result.points = points_of(best);
   result.start_direction = best.arcs.front().first;
+  result.end_direction = best.arcs.back().last;
   result.num_iterations = best.rounds;
   for (const ChainArc& arc : best.arcs) {
     result.residual.surface = std::max(result.residual.surface, arc.residual.surface);

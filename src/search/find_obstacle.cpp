@@ -1,12 +1,15 @@
-// Why no way was found between two points that the cells connect. In this order: the march stopped where the gradient
-// falls to nothing (two sheets or the sides of a neck that nearly touch, or a singular point, by Newton's method for
-// grad F = 0); cells that tell too little; a crease at an end; a crease between the ends; else no reason is known.
+// Why no way was found between two points that the cells connect. In this order: an end is singular; the march stopped
+// where the gradient falls to nothing (two sheets or the sides of a neck that nearly touch, or a singular point, by
+// Newton's method for grad F = 0); cells that tell too little; a crease at an end; a crease between the ends; else no
+// reason is known.
 #include "search/find_obstacle.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "taut/surface/diagnose.hpp"
 
 namespace taut::detail {
 namespace {
@@ -77,6 +80,10 @@ std::optional<Pinch> find_pinch(const Surface& surface, const Vector& x, double 
 }  // namespace
 
 Obstacle find_obstacle(const Surface& surface, const Vector& from, const Vector& to, const Tried& tried) {
+  for (const Vector& end : {from, to}) {
+    // By comparison with the points around: at the point itself rounding may leave a gradient of 1e-16.
+    if (diagnose_rank(surface.function(), VectorIn(end))) return {Obstacle::Kind::singular_end, end};
+  }
   const std::optional<Barrier>& barrier = tried.barrier;
   if (barrier && gradient_share(surface, *barrier, from, to) < kSingular) {
     const std::optional<Pinch> pinch = find_pinch(surface, barrier->point, kPinchCells * tried.cell);

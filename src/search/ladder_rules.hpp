@@ -33,10 +33,10 @@ struct LadderRules {
   /// It may do this part of the work that a field's fan may: about a second. Of 120 fans that were wanted by tests most
   /// took a thirtieth of that, the largest, over the rims of a flat body, the whole.
   double fan_effort = 0.06;
-  /// It is to tell ways apart, so to this relative tolerance; ways longer by that part than the shortest are corrected,
-  /// too.
-  double fan_tolerance = 1e-7;
-  double fan_rivals = 1e-6;
+  /// It is to tell ways apart, so to this relative tolerance; ways longer by no more than that part than the shortest
+  /// are corrected, too.
+  double fan_tolerance = 1e-5;
+  double fan_rivals = 1e-4;
 };
 
 inline constexpr LadderRules kLadderRules;

@@ -148,6 +148,7 @@ PathResult PathSearch::conclude(Inquiry now) const {
     const bool walks = options_.method != CorrectionMethod::grid;
     now.best->obstacle =
         find_obstacle(surface_, now.from(), now.to(), {now.blank.cell, now.barrier, levels().mostly_resolved(), walks});
+    if (now.best->obstacle.kind == Obstacle::Kind::singular_end) now.best->status = Status::rank_deficient;
   }
   PathResult result = *std::move(now.best);
   result.seconds = now.blank.seconds;

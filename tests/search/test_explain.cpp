@@ -70,6 +70,12 @@ TEST(Explain, ObstaclesInWords) {
       stopped({Kind::apart}, {Doubt::beyond_window}),
       "the two points lie on different components of the surface within [-1, 1] x [-2, 2] x [-3, 3], beyond which "
       "it goes on");
+  EXPECT_EQ(stopped({Kind::apart_by_fan}),
+            "the two points lie on different components of the surface: no geodesic from the start, of those in all "
+            "directions, comes to the end");
+  EXPECT_EQ(stopped({Kind::singular_end, place}),
+            "the surface is singular at (0, 0.5, 1): a gradient vanishes there, or the equations depend on each other; "
+            "take a point beside it");
   EXPECT_EQ(stopped({Kind::apart_by_walks}),
             "no path was found: the two points seem to lie on different components (random searches from both ends do "
             "not meet; in 3 dimensions there are no cells to prove it; samples of the surface may help)");

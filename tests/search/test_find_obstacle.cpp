@@ -6,6 +6,7 @@
 #include <numbers>
 #include <string>
 
+#include "taut/query/path.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {
@@ -29,6 +30,15 @@ TEST(FindObstacle, NamesTheSingularPoint) {
                                      Eigen::Vector3d(3, 0, 0), Eigen::Vector3d(0.999, 0.04, 0.01));
   EXPECT_EQ(touching.kind, Obstacle::Kind::singular_between);
   EXPECT_LT((touching.place - Eigen::Vector3d(1, 0, 0)).norm(), 1e-4);
+}
+
+// A parallelogram of bars laid flat: the first equation's gradient is 1e-16 there, by rounding of sin(pi).
+TEST(FindObstacle, NamesAnEndThatIsSingular) {
+  const Surface bars = parse_surface("cos(x1)+2*cos(x1+x2)+cos(x1+x2+x3)=2; sin(x1)+2*sin(x1+x2)+sin(x1+x2+x3)=0");
+  const double pi = std::numbers::pi;
+  const PathResult path = shortest_path(bars, Eigen::Vector3d(0, 0, pi), Eigen::Vector3d(0.5, -0.5, pi + 0.5));
+  EXPECT_EQ(path.status, Status::rank_deficient) << path.message;
+  EXPECT_EQ(path.obstacle.kind, Obstacle::Kind::singular_end) << path.message;
 }
 
 TEST(FindObstacle, TellsNearlyTouchingSheetsFromASingularPoint) {

@@ -32,6 +32,16 @@ TEST(PathSearch, APlainPairTakesOneRung) {
   EXPECT_TRUE(path.unique);
 }
 
+// On a great circle the tangents are the ends turned by a right angle.
+TEST(PathSearch, APathHasItsDirectionsAtBothEnds) {
+  const Eigen::Vector3d p(0, 0, 1);
+  const Eigen::Vector3d q(0, 0.6, -0.8);
+  const PathResult path = shortest_path(test::unit_sphere(), p, q);
+  ASSERT_EQ(path.status, Status::ok) << path.message;
+  EXPECT_LT((path.start_direction - Eigen::Vector3d(0, 1, 0)).norm(), 1e-9);
+  EXPECT_LT((path.end_direction - Eigen::Vector3d(0, -0.8, -0.6)).norm(), 1e-9);
+}
+
 TEST(PathSearch, TheSamePointNeedsNone) {
   const PathResult path = shortest_path(test::unit_sphere(), Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, 1));
   EXPECT_TRUE(path.rungs.empty());

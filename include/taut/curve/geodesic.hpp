@@ -28,7 +28,10 @@ struct Geodesic {
   int num_iterations = 0;
   /// d x m in order, first and last exactly the end points given, every one on the surface: what to draw or write.
   Points points;
-  Vector start_direction;  ///< d: the unit tangent at the start, of a spectral curve; empty where there is none
+  /// d each: the unit tangents at the ends, in the direction of travel, of a spectral curve; empty where there is none.
+  /// The distance changes by minus the first when the start moves, and by the second when the end does.
+  Vector start_direction;
+  Vector end_direction;
   /// Why the status is not ok, in a few words for people; empty when it is.
   std::string_view reason;
 };

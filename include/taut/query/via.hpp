@@ -10,7 +10,7 @@ namespace taut {
 /// residuals and cells the largest, `unique` and `locally_shortest` hold when they hold for every leg, `tied` and
 /// `doubts` when they do for one, `points` run
 /// through all legs without repeating the joints. It has the status and message of its worst leg, and no length and
-/// points when a leg has none. `grid_path`, `candidates` and `start_direction` are left to the legs.
+/// points when a leg has none. `grid_path`, `candidates` and the directions at the ends are left to the legs.
 struct ViaResult : PathResult {
   std::vector<PathResult> legs;  ///< n - 1, each a shortest path
 };

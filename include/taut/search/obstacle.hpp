@@ -21,6 +21,7 @@ struct Obstacle {
     coarse_cells,      ///< the cells are coarser than the surface bends
     narrow_gap,        ///< near `place` parts of the surface come within `size` (model units) of each other
     singular_between,  ///< near `place` the gradient falls to nothing
+    singular_end,      ///< one of the points, `place`, is a singular one: the equations depend on each other there
     corner,            ///< the normal jumps at one of the points, `place`
     crease,            ///< near `place` the normal turns by `size` (radians) within a cell
     cells_spent,       ///< as many cells as may grow did not lead from one end to the other
@@ -48,6 +49,7 @@ struct Obstacle {
     case Obstacle::Kind::coarse_cells: return "coarse_cells";
     case Obstacle::Kind::narrow_gap: return "narrow_gap";
     case Obstacle::Kind::singular_between: return "singular_between";
+    case Obstacle::Kind::singular_end: return "singular_end";
     case Obstacle::Kind::corner: return "corner";
     case Obstacle::Kind::crease: return "crease";
     case Obstacle::Kind::cells_spent: return "cells_spent";
