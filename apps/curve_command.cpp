@@ -80,7 +80,7 @@ void write_files(const CurveArguments& arguments, const Surface& surface, const 
   write_json_files(arguments.files, json);
   if (curve.points.cols() < 2) return;
   const Polylines lines{.lines = {curve.points}, .scalars = {}};
-  std::optional<TriangleMesh> mesh;
+  std::optional<SurfaceMesh> mesh;
   for (const std::string& file : arguments.files.out) {
     if (file.ends_with(".json")) continue;
     FileArguments one = arguments.files;
@@ -89,10 +89,11 @@ void write_files(const CurveArguments& arguments, const Surface& surface, const 
       write_polylines(file, lines);
       continue;
     }
-    if (!mesh) mesh = display_mesh(surface, {}, context);
+    if (!mesh) mesh = display_mesh(surface, {.part_faces = true}, context);
     write_mesh_files(one, {.surface = surface,
                            .mesh = *mesh,
                            .isolines = {},
+                           .edges = mesh->edges,
                            .marks = controls,
                            .mark_name = "control point",
                            .curves = {curve.points},

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "cell_arguments.hpp"
 #include "commands.hpp"
@@ -32,12 +34,16 @@ ExitCode run(const MeshArguments& arguments) {
   const Surface surface = load_surface(arguments.surface, context);
   DisplayMeshOptions options = arguments.options;
   options.seeds = read_seeds(arguments.surface, surface, options.grid, context);
+  const auto& files = arguments.files.out;
+  options.part_faces = std::ranges::all_of(
+      files, [](const std::string& file) { return FileArguments{.out = {file}, .view = {}}.has_picture(); });
   const SurfaceMesh mesh = display_mesh(surface, options, context);
   clear_progress();
   const std::vector<SceneFact> facts = {{"vertices", grouped(mesh.vertices.cols())},
                                         {"triangles", grouped(mesh.faces.cols())}};
   write_mesh_files(arguments.files, {.surface = surface,
                                      .mesh = mesh,
+                                     .edges = mesh.edges,
                                      .marks = {},
                                      .facts = facts,
                                      .title = picture_title(arguments.surface.surface)});

@@ -61,6 +61,26 @@ std::string known_outputs(OutputKind kind) {
                                   : fmt::format("{}", fmt::join(kMeshOutputs, " "));
 }
 
+/// Polylines as thin lines.
+SceneLines scene_lines(const Polylines& lines, std::string name) {
+  SceneLines result{.vertices = Points(3, lines.num_points()), .segments = {}, .name = std::move(name)};
+  result.segments.resize(2, lines.num_points() - static_cast<Index>(lines.lines.size()));
+  Index vertex = 0;
+  Index segment = 0;
+  for (const Points& line : lines.lines) {
+    result.vertices.middleCols(vertex, line.cols()) = line;
+    for (Index i = 0; i + 1 < line.cols(); ++i) {
+      result.segments.col(segment++) << static_cast<int>(vertex + i), static_cast<int>(vertex + i + 1);
+    }
+    vertex += line.cols();
+  }
+  return result;
+}
+
+void add_edges(Scene& scene, const Polylines& edges) {
+  if (!edges.lines.empty()) scene.lines.push_back(scene_lines(edges, "edges"));
+}
+
 /// Builds what a picture of paths shows.
 class PathScene {
  public:
@@ -91,10 +111,13 @@ class PathScene {
         throw InvalidArgument("--field colours surfaces in 3 dimensions with one equation");
       }
       FieldResult field = marched_field(output_.surface, source_points(), output_.field, context);
+      add_edges(scene_, field.mesh.edges);
       const std::string distance = field.mesh.scalars.front().name;
       scene_.meshes.push_back({.mesh = std::move(field.mesh), .coloured_by = distance});
     } else if (output_.surface.dim() == 3 && output_.surface.codim() == 1) {
-      scene_.meshes.push_back({.mesh = display_mesh(output_.surface, {.exact = false, .near = ends()}, context)});
+      SurfaceMesh mesh = display_mesh(output_.surface, {.exact = false, .near = ends(), .part_faces = true}, context);
+      add_edges(scene_, mesh.edges);
+      scene_.meshes.push_back({.mesh = std::move(mesh)});
     } else if (output_.surface.dim() == 2 && output_.surface.codim() == 1) {
       const CurveMesh curve = display_curve(output_.surface, {.exact = false, .near = ends()}, context);
       scene_.lines.push_back({.vertices = curve.vertices, .segments = curve.segments, .name = "F = 0"});
@@ -207,22 +230,6 @@ class PathScene {
   Scene scene_;
   std::size_t num_paths_ = 0;
 };
-
-/// Isolines as thin lines.
-SceneLines scene_lines(const Polylines& lines) {
-  SceneLines result{.vertices = Points(3, lines.num_points()), .segments = {}, .name = "isolines"};
-  result.segments.resize(2, lines.num_points() - static_cast<Index>(lines.lines.size()));
-  Index vertex = 0;
-  Index segment = 0;
-  for (const Points& line : lines.lines) {
-    result.vertices.middleCols(vertex, line.cols()) = line;
-    for (Index i = 0; i + 1 < line.cols(); ++i) {
-      result.segments.col(segment++) << static_cast<int>(vertex + i), static_cast<int>(vertex + i + 1);
-    }
-    vertex += line.cols();
-  }
-  return result;
-}
 
 }  // namespace
 
@@ -353,7 +360,8 @@ void write_mesh_files(const FileArguments& files, const MeshOutput& output) {
       scene->towards_viewer = files.towards_viewer();
       const std::string coloured_by = output.mesh.scalars.empty() ? "" : output.mesh.scalars.front().name;
       scene->meshes.push_back({.mesh = output.mesh, .coloured_by = coloured_by});
-      if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines));
+      if (output.isolines) scene->lines.push_back(scene_lines(*output.isolines, "isolines"));
+      add_edges(*scene, output.edges);
       for (const Points& curve : output.curves) scene->paths.push_back({.points = curve, .label = {}});
       const bool few = output.marks.cols() <= kMostLabels;
       for (Index j = 0; j < output.marks.cols(); ++j) {

@@ -78,6 +78,7 @@ struct MeshOutput {
   const Surface& surface;
   const TriangleMesh& mesh;
   std::optional<Polylines> isolines = {};  ///< drawn on the mesh in pictures; other files hold them instead of it
+  Polylines edges = {};                    ///< sharp edges and borders, drawn as thin lines
   Points marks;                            ///< 3 x m: points to show, such as the sources of a field
   std::string mark_name = "source";
   std::vector<Points> curves = {};  ///< each 3 x n: drawn thick in pictures, as paths are

@@ -256,6 +256,70 @@ std::string facts_text(const std::vector<SceneFact>& facts) {
   return text;
 }
 
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+void add_edges(const SurfaceEdges& found, Json& json) {
+  json["faces"] = Json::array();
+  for (const SurfaceFace& face : found.faces) {
+    json["faces"].push_back({{"face", face.formula}, {"patches", face.patches}});
+  }
+  json["edges"] = Json::array();
+  for (const SurfaceEdge& edge : found.edges) {
+    json["edges"].push_back({{"kind", to_string(edge.kind)},
+                             {"length", number(edge.length)},
+                             {"angle", number(kDegrees * edge.angle)},
+                             {"closed", edge.closed},
+                             {"cut_by_box", edge.cut},
+                             {"faces", edge.faces}});
+  }
+  json["corners"] = points_json(found.corners);
+}
+
+/// A total for each kind, and a line for each edge where they are few.
+void add_edges(const SurfaceEdges& found, std::vector<SceneFact>& facts) {
+  constexpr std::size_t kMostShown = 12;
+  std::vector<std::string> formulas;
+  int patches = 0;
+  for (const SurfaceFace& face : found.faces) {
+    patches += face.patches;
+    if (formulas.size() == kMostShown) continue;
+    if (face.formula.empty()) continue;  // the whole surface, with a border
+    formulas.push_back(face.patches == 1 ? face.formula : fmt::format("{} ({} patches)", face.formula, face.patches));
+  }
+  if (found.faces.size() > kMostShown) formulas.emplace_back("...");
+  facts.push_back({"faces", fmt::format("{}{}{}", patches, formulas.empty() ? "" : ": ", fmt::join(formulas, ", "))});
+  for (const auto kind : {SurfaceEdge::Kind::sharp, SurfaceEdge::Kind::seam, SurfaceEdge::Kind::border}) {
+    Index count = 0;
+    double length = 0;
+    bool cut = false;
+    for (const SurfaceEdge& edge : found.edges) {
+      if (edge.kind != kind) continue;
+      ++count;
+      length += edge.length;
+      cut = cut || edge.cut;
+    }
+    if (count == 0) continue;
+    const char* name = kind == SurfaceEdge::Kind::sharp  ? "edges"
+                       : kind == SurfaceEdge::Kind::seam ? "seams"
+                                                         : "borders";
+    facts.push_back({name, fmt::format("{} of length {:.15g}{}", grouped(count), length,
+                                       cut ? " within the box: they go on beyond" : "")});
+    if (found.edges.size() > kMostShown) continue;
+    for (const SurfaceEdge& edge : found.edges) {
+      if (edge.kind != kind) continue;
+      std::string text = fmt::format("{:.15g}{}", edge.length, edge.closed ? ", closed" : "");
+      if (kind == SurfaceEdge::Kind::sharp) text += fmt::format(", {:.4g} degrees", kDegrees * edge.angle);
+      if (!edge.faces.front().empty()) text += fmt::format(": {}", fmt::join(edge.faces, " | "));
+      facts.push_back({"", text});
+    }
+  }
+  facts.push_back({"corners", grouped(found.corners.cols())});
+}
+
+}  // namespace
+
 nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
   Json json;
   json["command"] = "info";
@@ -275,6 +339,7 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
     json["closed"] = summary.shape->closed;
     json["cut_by_box"] = summary.shape->cut_by_box;
   }
+  if (summary.edges) add_edges(*summary.edges, json);
   json["samples"] = summary.num_samples;
   if (summary.num_samples > 0) {
     json["sample_residual"] = {{"rms", number(summary.sample_rms)}, {"max", number(summary.sample_max)}};
@@ -321,6 +386,7 @@ std::vector<SceneFact> summary_facts(const SurfaceSummary& summary) {
     }
     facts.push_back({"components", components});
     if (summary.shape) facts.push_back({"shape", shape_text(*summary.shape)});
+    if (summary.edges) add_edges(*summary.edges, facts);
   } else {
     facts.push_back(
         {"cells", "none: there would be too many in more than 6 dimensions (--grid grow grows some from --samples)"});

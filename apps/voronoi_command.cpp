@@ -82,6 +82,7 @@ ExitCode run(VoronoiArguments arguments) {
   MeshOutput output{.surface = surface,
                     .mesh = result.mesh,
                     .isolines = {},
+                    .edges = result.mesh.edges,
                     .marks = sources,
                     .facts = facts,
                     .title = "Nearest sources on " + picture_title(arguments.geodesic.surface.surface)};

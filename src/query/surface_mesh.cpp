@@ -5,10 +5,14 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "search/cell_levels.hpp"
+#include "strata/facet_complex.hpp"
+#include "strata/sharp_mesh.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
@@ -40,8 +44,8 @@ double size_for_budget(const Points& samples, Index most) {
   return counted * std::sqrt(crossed / static_cast<double>(most));
 }
 
-/// The cells to look at: those for marching would be too coarse.
-CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
+/// The cells to look at, in `box`: those for marching would be too coarse.
+CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options, const Context& context, Box& box) {
   const Points near = options.near.rows() == surface.dim() ? options.near : Points(surface.dim(), 0);
   const bool fitted = surface.samples() != nullptr && surface.samples()->size() > 0;
   const bool grown = fitted && options.grid != GridMethod::subdivide;
@@ -49,6 +53,7 @@ CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options,
   const GridMethod method = grown || from_seeds ? GridMethod::grow : GridMethod::subdivide;
   detail::CellLevels levels(surface, {method, options.cell, options.seeds}, context);
   levels.prepare(near);
+  box = levels.box();
   if (from_seeds) return levels.cells(options.cell > 0 ? 0 : 1, near)->grid();
   const double finest = options.cell_at_most > 0 ? options.cell_at_most : std::numeric_limits<double>::infinity();
   if (grown) {
@@ -70,6 +75,18 @@ MeshOptions mesh_options(const DisplayMeshOptions& options, const CellGrid& grid
   return {.tolerance = options.exact ? 0 : kRough * grid.size()};
 }
 
+/// Not its seams: nobody sees them.
+Polylines lines_of(const detail::FacetComplex& complex) {
+  Polylines result;
+  for (const detail::EdgeLine& line : complex.network.lines) {
+    if (complex.surface->edge(line.edge).b >= 0 && line.angle <= detail::kSeamAngle) continue;
+    Points points(3, static_cast<Index>(line.points.size()));
+    for (std::size_t i = 0; i < line.points.size(); ++i) points.col(static_cast<Index>(i)) = line.points[i];
+    result.lines.push_back(std::move(points));
+  }
+  return result;
+}
+
 }  // namespace
 
 SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options, const Context& context) {
@@ -77,10 +94,15 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
     throw InvalidArgument("only surfaces in 3 dimensions with one equation can be meshed, not " +
                           std::to_string(surface.dim()) + " dimensions with " + std::to_string(surface.codim()));
   }
-  const CellGrid grid = display_grid(surface, options, context);
+  Box box;
+  const CellGrid grid = display_grid(surface, options, context, box);
   SurfaceMesh mesh = mesh_surface(surface, grid, mesh_options(options, grid), context);
   if (mesh.faces.cols() == 0) {
     throw EmptySurface("the surface has no piece that these cells can show; try smaller ones");
+  }
+  if (std::optional<detail::FacetComplex> complex = detail::FacetComplex::of(surface, box, context)) {
+    detail::sharpen_mesh(*complex->surface, complex->network, grid, options.part_faces, mesh);
+    mesh.edges = lines_of(*complex);
   }
   return mesh;
 }
@@ -90,7 +112,8 @@ CurveMesh display_curve(const Surface& surface, const DisplayMeshOptions& option
     throw InvalidArgument("only curves in the plane with one equation can be drawn, not " +
                           std::to_string(surface.dim()) + " dimensions with " + std::to_string(surface.codim()));
   }
-  const CellGrid grid = display_grid(surface, options, context);
+  Box box;
+  const CellGrid grid = display_grid(surface, options, context, box);
   CurveMesh curve = mesh_curve(surface, grid, mesh_options(options, grid), context);
   if (curve.segments.cols() == 0) {
     throw EmptySurface("the curve has no piece that these cells can show; try smaller ones");

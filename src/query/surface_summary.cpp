@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 
+#include "query/edges_of.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/facet_complex.hpp"
+#include "strata/sharp_mesh.hpp"
 #include "taut/cells/components.hpp"
 #include "taut/cells/grow.hpp"
 #include "taut/cells/mesh_surface.hpp"
@@ -49,8 +53,10 @@ Index count_boundary_edges(const Eigen::Matrix3Xi& faces) {
   return alone;
 }
 
-SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, const Context& context) {
-  const SurfaceMesh mesh = mesh_surface(surface, grid, {}, context);
+SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, std::optional<detail::FacetComplex>& complex,
+                      const Context& context) {
+  SurfaceMesh mesh = mesh_surface(surface, grid, {}, context);
+  if (complex) detail::sharpen_mesh(*complex->surface, complex->network, grid, false, mesh);
   SurfaceShape shape;
   for (Index f = 0; f < mesh.faces.cols(); ++f) {
     const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f));
@@ -140,7 +146,11 @@ SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, 
         summary.num_layers = envelope->num_layers();
         summary.num_envelope_cells = envelope->num_cells();
       }
-      if (surface.dim() == 3 && surface.codim() == 1) summary.shape = shape_of(surface, cells->grid(), context);
+      if (surface.dim() == 3 && surface.codim() == 1) {
+        std::optional<detail::FacetComplex> complex = detail::FacetComplex::of(surface, levels.box(), context);
+        if (complex) summary.edges = detail::edges_of(*complex);
+        summary.shape = shape_of(surface, cells->grid(), complex, context);
+      }
       summary.components = component_sizes(components(cells->grid()));
     } catch (const EmptySurface&) {
       throw_if_rank_deficient(surface, levels);

@@ -17,7 +17,6 @@
 #include "strata/facet_ways.hpp"
 #include "strata/shorten_chain.hpp"
 #include "strata/way_chain.hpp"
-#include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {
@@ -25,8 +24,6 @@ namespace {
 
 /// Cells of a graph, about: some 10 to 20 ms.
 constexpr double kCells = 4000;
-/// Cells a side for a first count.
-constexpr double kFirstCells = 12;
 /// A graph's ways are too long by at most this part, and too short by its bends.
 constexpr double kWaySlack = 0.06;
 /// Of all ways, those up to so many times as long.
@@ -66,12 +63,7 @@ FacetSearch::FacetSearch(const Surface& surface, const PathOptions& options, con
 std::shared_ptr<const FacetGraph> FacetSearch::graph(const Box& box, double cells) {
   surface_->scale = box.diagonal();
   try {
-    double size = options_.cell;
-    if (size == 0) {
-      const double first = box.extent().maxCoeff() / kFirstCells;
-      const Index coarse = subdivide(surface_->surface(), {.size = first, .box = box}, context_).num_cells();
-      size = first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
-    }
+    const double size = options_.cell > 0 ? options_.cell : cell_size_for(*surface_, box, cells, context_);
     return std::make_shared<const FacetGraph>(*surface_, box, size, context_);
   } catch (const EmptySurface&) {
     return nullptr;

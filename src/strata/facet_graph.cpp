@@ -82,6 +82,13 @@ FacetLink reversed(const FacetLink& link, std::uint32_t from, const FacetNode& a
 
 }  // namespace
 
+double cell_size_for(const FacetedSurface& surface, const Box& box, double cells, const Context& context) {
+  constexpr double kFirstCells = 12;  // a side, for a first count
+  const double first = box.extent().maxCoeff() / kFirstCells;
+  const Index coarse = subdivide(surface.surface(), {.size = first, .box = box}, context).num_cells();
+  return first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
+}
+
 /// More faces at one point than a link has bits are not walked on.
 FacetLink step_between(FacetedSurface& surface, const FacetNode& a, const FacetNode& b) {
   FacetLink link;

@@ -81,6 +81,10 @@ class FacetGraph {
   Bins bins_;
 };
 
+/// The size at which a box has about `cells` cells that the surface crosses. Throws EmptySurface, OutOfMemory,
+/// Cancelled.
+[[nodiscard]] double cell_size_for(const FacetedSurface& surface, const Box& box, double cells, const Context& context);
+
 /// The step from a to b, infinite where there is none.
 [[nodiscard]] FacetLink step_between(FacetedSurface& surface, const FacetNode& a, const FacetNode& b);
 

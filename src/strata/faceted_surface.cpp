@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "surface/formula/affine.hpp"
+#include "surface/formula/formula_function.hpp"
 
 namespace taut::detail {
 namespace {
@@ -54,6 +55,12 @@ double second_derivative(Evaluator& evaluator, int count, int i, const Point3& x
 }
 
 }  // namespace
+
+bool is_kinked(const Surface& surface) {
+  if (surface.dim() != 3 || surface.codim() != 1) return false;
+  const auto* formula = dynamic_cast<const FormulaFunction*>(&surface.function());
+  return formula != nullptr && formula->program().has_kinks();
+}
 
 std::unique_ptr<FacetedSurface> FacetedSurface::of(const Surface& surface) {
   if (surface.dim() != 3 || surface.codim() != 1) return nullptr;

@@ -158,4 +158,7 @@ class FacetedSurface {
   std::map<std::tuple<int, int, int>, int> edge_of_;
 };
 
+/// Is the surface one whose faces may meet in edges: a formula in R^3 with `min max abs sign`.
+[[nodiscard]] bool is_kinked(const Surface& surface);
+
 }  // namespace taut::detail

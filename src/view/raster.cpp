@@ -25,6 +25,8 @@ constexpr float kNothing = -std::numeric_limits<float>::infinity();
 /// The isolines of a scalar: this many, and this dark.
 constexpr int kIsolines = 12;
 constexpr float kIsolineShade = 0.55F;
+/// Lines stand out of the mesh by this part of the scene's radius: its triangles are chords of what they lie on.
+constexpr double kLineLift = 0.003;
 
 /// A vertex ready to be rasterised.
 struct ScreenVertex {
@@ -314,7 +316,7 @@ class Screen {
       : stage_(stage), camera_(camera), project_(camera, kSamples) {
     for (const StageMesh& mesh : stage.meshes) add(mesh);
     for (const StageLines& lines : stage.lines) {
-      add_lines(lines.positions, lines.segments, 0, to_linear(lines.colour), Layer::surface, 1);
+      add_lines(lines.positions, lines.segments, kLineLift * stage.radius, to_linear(lines.colour), Layer::surface, 1);
     }
     if (stage.cells_shown && stage.cell_size > 0) add_cells();
     if (options.paths) add_paths(0.5 * options.path_width / camera.scale());

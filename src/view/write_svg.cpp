@@ -118,12 +118,17 @@ class SvgWriter {
   void lines() {
     for (const detail::StageLines& lines : stage_.lines) {
       std::string data;
-      for (const auto& segment : lines.segments.colwise()) {
-        for (Index i = 0; i < 2; ++i) {
-          const detail::Seen p = camera_.see(lines.positions.col(segment(i)).cast<double>());
-          data.append(i == 0 ? "M" : "L");
-          append_pixel(data, p.x, p.y);
+      // Segments that go on from one to the next are one polyline, of which what lies behind a mesh is left out.
+      for (Index first = 0; first < lines.segments.cols();) {
+        Index last = first;
+        while (last + 1 < lines.segments.cols() && lines.segments(0, last + 1) == lines.segments(1, last)) ++last;
+        Eigen::Matrix3Xf chain(3, last - first + 2);
+        chain.col(0) = lines.positions.col(lines.segments(0, first));
+        for (Index i = first; i <= last; ++i) chain.col(i - first + 1) = lines.positions.col(lines.segments(1, i));
+        for (const PathRun& run : detail::cut_path(chain, camera_, depth_, detail::kPathLift * stage_.radius)) {
+          if (!run.hidden) data += polyline(run.pixels);
         }
+        first = last + 1;
       }
       if (!data.empty()) stroke(data, css_colour(lines.colour), stage_.flat ? 2 : 1, "");
     }

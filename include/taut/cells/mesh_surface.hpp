@@ -20,6 +20,8 @@ struct MeshOptions {
 struct SurfaceMesh : TriangleMesh {
   /// The cell of the grid each vertex came from: one entry a vertex. (Beside the domain's edge: a neighbouring cell.)
   std::vector<Index> cell;
+  /// Sharp edges and borders, to be drawn as lines; `display_mesh` finds them.
+  Polylines edges;
 };
 
 /// The display mesh of {F = 0} for d = 3, k = 1: the manifold dual of marching cubes on exactly the cells of `grid`. A

@@ -14,12 +14,17 @@ struct DisplayMeshOptions {
   bool exact = true;
   /// d x n: places that must be in the picture; they decide which part of a surface without end is shown.
   Points near = {};
+  /// True: faces that meet in an edge have their own vertices and normals there, so that pictures show it sharp. The
+  /// mesh is no manifold then.
+  bool part_faces = false;
   Points seeds = {};  ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
 };
 
 /// The surface as triangles, its box and cell size chosen: `mesh_surface` for people in a hurry. Cells are half as
 /// large as those that paths are marched on, or coarser where there would be more than 20,000 of a fitted surface
-/// (150,000 of another one). Throws as `mesh_surface` does, and EmptySurface when there is nothing to mesh.
+/// (150,000 of another one). Edges and corners of formulas with `min max abs sign`, and those of a domain, are in the
+/// mesh: each corner is a vertex, and edges are chains of its sides. Throws as `mesh_surface` does, and EmptySurface
+/// when there is nothing to mesh.
 [[nodiscard]] SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options = {},
                                        const Context& context = {});
 

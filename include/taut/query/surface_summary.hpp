@@ -8,6 +8,7 @@
 #include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
 #include "taut/query/path.hpp"
+#include "taut/query/surface_edges.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut {
@@ -45,6 +46,7 @@ struct SurfaceSummary {
   Index num_envelope_cells = 0;             ///< ... and all its cells
   std::vector<Index> components;            ///< cells of each connected component, largest first
   std::optional<SurfaceShape> shape;        ///< where d = 3 and k = 1
+  std::optional<SurfaceEdges> edges;        ///< within the box; where there are any (see `surface_edges`)
   Index num_samples = 0;
   double sample_rms = 0;  ///< of |F| / |grad F| over the samples, model units
   double sample_max = 0;
