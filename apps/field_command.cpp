@@ -244,14 +244,18 @@ ExitCode run(FieldArguments arguments, const CLI::App& command) {
   }
   tell_of_ignored_faces(surface, farthest, context);
   const std::vector<SceneFact> facts = {
-      {"cells", cells_text(field.num_cells, field.cell, field.num_layers)},
+      field.over_mesh ? SceneFact{"triangles", grouped(field.mesh.faces.cols())}
+                      : SceneFact{"cells", cells_text(field.num_cells, field.cell, field.num_layers)},
       {"reached", fmt::format("{} of {} vertices", grouped(reached), grouped(distance.size()))},
       {"farthest", fmt::format("{:.6g}", farthest)},
       {"exact", exact ? fmt::format("{} of {} vertices", grouped(num_exact), grouped(distance.size()))
-                      : std::string("none: marched distances")}};
+                      : std::string(field.over_mesh ? "none: marched over triangles, since the surface has edges; "
+                                                      "--at gives exact distances"
+                                                    : "none: marched distances")}};
   write_mesh_files(arguments.files, {.surface = surface,
                                      .mesh = field.mesh,
                                      .isolines = isolines,
+                                     .edges = field.mesh.edges,
                                      .marks = sources,
                                      .facts = facts,
                                      .title = "Distances on " + picture_title(arguments.surface.surface)});

@@ -11,6 +11,7 @@
 #include "curve/polished.hpp"
 #include "fan/fan_answers.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/faceted_surface.hpp"
 #include "surface/describe.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
@@ -49,12 +50,17 @@ struct DistanceSolver::Impl {
   std::vector<FanCurve> curves;  // empty: the sources are points
   std::optional<GeodesicFan> fan;
   std::optional<PathSolver> paths;
+  bool kinked;
 
   Impl(Surface s, const DistanceOptions& o, Context c)
-      : surface(std::move(s)), options(o), context(std::move(c)), levels(surface, {o.grid, o.cell, o.seeds}, context) {}
+      : surface(std::move(s)),
+        options(o),
+        context(std::move(c)),
+        levels(surface, {o.grid, o.cell, o.seeds}, context),
+        kinked(detail::is_kinked(surface)) {}
 
-  /// A fan follows rays on surfaces in R^3.
-  [[nodiscard]] bool has_fan() const { return surface.dim() == 3 && surface.codim() == 1; }
+  /// A fan follows rays on surfaces in R^3. Over edges it does not.
+  [[nodiscard]] bool has_fan() const { return surface.dim() == 3 && surface.codim() == 1 && !kinked; }
 
   void make_fan() {
     if (!has_fan() || fan) return;
@@ -307,7 +313,7 @@ void DistanceSolver::set_sources(const PointsIn& sources, const Vector& values) 
 void DistanceSolver::set_curves(const std::vector<Points>& polylines) {
   Impl& impl = *impl_;
   if (!impl.has_fan()) {
-    throw InvalidArgument("distances from curves are for surfaces in 3 dimensions without a border");
+    throw InvalidArgument("distances from curves are for surfaces in 3 dimensions without edges");
   }
   if (polylines.empty()) throw InvalidArgument("distances need at least one curve");
   std::vector<FanCurve> curves;

@@ -16,6 +16,7 @@
 #include "core/parallel.hpp"
 #include "fan/fan_answers.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/faceted_surface.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/fan/geodesic_fan.hpp"
@@ -71,7 +72,7 @@ struct DistanceMatrix::Impl {
     }
     points = all.leftCols(from.cols());
     targets = to != nullptr ? Points(all.rightCols(to->cols())) : points;
-    if (surface.dim() == 3 && surface.codim() == 1) find_panel(levels);
+    if (surface.dim() == 3 && surface.codim() == 1 && !detail::is_kinked(surface)) find_panel(levels);
   }
 
   void find_panel(detail::CellLevels& levels) {

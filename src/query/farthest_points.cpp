@@ -7,10 +7,13 @@
 #include <limits>
 #include <memory>
 
+#include "march/mesh_march.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/faceted_surface.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
+#include "taut/query/surface_mesh.hpp"
 
 namespace taut {
 
@@ -48,6 +51,39 @@ FarthestPoints farthest_points(const Surface& surface, SurfaceCells& cells, cons
   return chosen;
 }
 
+namespace {
+
+/// Vertices of the mesh, by distances over its triangles: cells are not marched across edges.
+FarthestPoints over_edges(const Surface& surface, const Vector& start, Index count,
+                          const FarthestPointsOptions& options, const Context& context) {
+  const SurfaceMesh mesh = display_mesh(
+      surface, {.cell = options.cell, .grid = options.grid, .near = start, .seeds = options.seeds}, context);
+  detail::MeshMarch march(mesh);
+  FarthestPoints chosen{.points = Points(3, count), .distance = {}, .nearest = {}, .cover = {}};
+  Vector next = start;
+  for (Index k = 0; k < count; ++k) {
+    chosen.points.col(k) = next;
+    march.add_source(next, context);
+    Index farthest = -1;
+    for (Index v = 0; v < mesh.vertices.cols(); ++v) {
+      const double distance = march.distance()(v);
+      if (std::isfinite(distance) && (farthest < 0 || distance > march.distance()(farthest))) farthest = v;
+    }
+    chosen.cover.push_back(march.distance()(farthest));
+    context.report("sample", static_cast<double>(k + 1) / static_cast<double>(count));
+    if (chosen.cover.back() == 0) {
+      chosen.points.conservativeResize(Eigen::NoChange, k + 1);
+      break;
+    }
+    next = mesh.vertices.col(farthest);
+  }
+  chosen.distance = march.distance();
+  chosen.nearest.assign(march.source().begin(), march.source().end());
+  return chosen;
+}
+
+}  // namespace
+
 FarthestPoints farthest_points(const Surface& surface, const VectorIn& first, Index count,
                                const FarthestPointsOptions& options, const Context& context) {
   if (count < 1) throw InvalidArgument("farthest points: ask for one or more");
@@ -68,6 +104,7 @@ FarthestPoints farthest_points(const Surface& surface, const VectorIn& first, In
     }
     if (start.size() == 0) throw EmptySurface("no surface was found to spread points over");
   }
+  if (detail::is_kinked(surface)) return over_edges(surface, start, count, options, context);
   constexpr Index kCellsPerPoint = 24;
   std::shared_ptr<SurfaceCells> cells = levels.cells(0, start);
   for (int level = 1; level < levels.num_levels() && options.cell == 0; ++level) {

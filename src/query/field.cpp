@@ -3,14 +3,49 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
+#include "march/mesh_march.hpp"
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
+#include "strata/faceted_surface.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
 #include "taut/query/surface_mesh.hpp"
 
 namespace taut {
+
+namespace {
+
+SurfaceMesh mesh_for(const Surface& surface, const Points& sources, const FieldOptions& options,
+                     const Context& context) {
+  return display_mesh(
+      surface, {.cell_at_most = options.cell, .grid = options.grid, .near = sources, .seeds = options.seeds}, context);
+}
+
+/// Puts distances onto the mesh: NaN where no path leads.
+void show(Vector distance, SurfaceMesh& mesh) {
+  for (double& u : distance) {
+    if (!std::isfinite(u)) u = std::numeric_limits<double>::quiet_NaN();
+  }
+  mesh.scalars.push_back({"distance", std::move(distance)});
+}
+
+/// Cells are not marched across edges; the mesh has them.
+FieldResult march_over_edges(const Surface& surface, const Points& sources, const FieldOptions& options,
+                             const Context& context) {
+  FieldResult result;
+  result.over_mesh = true;
+  result.mesh = mesh_for(surface, sources, options, context);
+  detail::MeshMarch march(result.mesh);
+  for (const auto& source : sources.colwise()) march.add_source(source, context);
+  result.points = result.mesh.vertices;
+  result.distance = march.distance();
+  show(march.distance(), result.mesh);
+  return result;
+}
+
+}  // namespace
 
 FieldResult marched_field(const Surface& surface, const PointsIn& sources, const FieldOptions& options,
                           const Context& context) {
@@ -34,6 +69,9 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
                  ": distances are along paths that stay in there");
   }
 
+  if (options.march == MarchMethod::convergent && options.envelope == 0 && detail::is_kinked(surface)) {
+    return march_over_edges(surface, on_surface, options, context);
+  }
   const std::shared_ptr<SurfaceCells> shared =
       options.envelope == 0 ? levels.cells(0, on_surface) : levels.envelope(0, options.envelope);
   SurfaceCells& cells = *shared;
@@ -55,14 +93,8 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   }
   if (surface.dim() != 3 || surface.codim() != 1) return result;
 
-  result.mesh = display_mesh(
-      surface, {.cell_at_most = options.cell, .grid = options.grid, .near = on_surface, .seeds = options.seeds},
-      context);
-  VertexScalar distance{"distance", distance_at(surface, cells, field, result.mesh.vertices)};
-  for (double& u : distance.values) {
-    if (!std::isfinite(u)) u = std::numeric_limits<double>::quiet_NaN();
-  }
-  result.mesh.scalars.push_back(std::move(distance));
+  result.mesh = mesh_for(surface, on_surface, options, context);
+  show(distance_at(surface, cells, field, result.mesh.vertices), result.mesh);
   return result;
 }
 

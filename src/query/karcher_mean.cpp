@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "march/point_normals.hpp"
+#include "strata/faceted_surface.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
 #include "taut/curve/geodesic_scales.hpp"
@@ -159,6 +160,9 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
   if (points.rows() != surface.dim() || n == 0) {
     throw InvalidArgument(
         fmt::format("the points ({} x {}) of a mean: must be {} x n, n >= 1", points.rows(), n, surface.dim()));
+  }
+  if (detail::is_kinked(surface)) {
+    throw InvalidArgument("means are found on smooth surfaces; this one has edges (min, max, abs or sign)");
   }
   if (weights.size() != 0 && weights.size() != n) {
     throw InvalidArgument(fmt::format("{} points have {} weights: give one each", n, weights.size()));

@@ -15,8 +15,10 @@
 #include <unordered_map>
 #include <utility>
 
+#include "march/mesh_march.hpp"
 #include "query/chains.hpp"
 #include "search/cell_levels.hpp"
+#include "strata/faceted_surface.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 #include "taut/query/surface_mesh.hpp"
@@ -208,7 +210,16 @@ VoronoiResult geodesic_voronoi(const Surface& surface, const PointsIn& sources, 
       result.label[at(v)] = u.source[at(v)];
     }
   }
-  if (result.num_exact < n) {
+  if (detail::is_kinked(surface)) {
+    // Cells are not marched across edges; the mesh has them.
+    detail::MeshMarch march(result.mesh);
+    for (const auto& source : solver.sources().colwise()) march.add_source(source, context);
+    for (Index v = 0; v < n; ++v) {
+      if (!std::isfinite(march.distance()(v)) || march.distance()(v) > options.max_distance) continue;
+      distance(v) = march.distance()(v);
+      result.label[at(v)] = march.source()[at(v)];
+    }
+  } else if (result.num_exact < n) {
     detail::CellLevels levels(surface, {options.grid, options.cell, options.seeds}, context);
     levels.prepare(solver.sources());
     SurfaceCells& cells = *levels.cells(0, solver.sources());

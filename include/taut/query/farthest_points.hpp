@@ -32,9 +32,9 @@ struct FarthestPointsOptions {
   Points seeds = {};  ///< as PathOptions::seeds
 };
 
-/// The same on cells of its own, in up to 6 dimensions: at most as many points as there are cells that a march from
-/// `first` (d, projected onto the surface; empty: the point of any cell) reaches. Throws as PathSolver::solve, and
-/// InvalidArgument unless count >= 1.
+/// The same on cells of its own, in up to 6 dimensions (where the formula has edges: on the vertices of its mesh): at
+/// most as many points as there are cells that a march from `first` (d, projected onto the surface; empty: the point of
+/// any cell) reaches. Throws as PathSolver::solve, and InvalidArgument unless count >= 1.
 [[nodiscard]] FarthestPoints farthest_points(const Surface& surface, const VectorIn& first, Index count,
                                              const FarthestPointsOptions& options = {}, const Context& context = {});
 
