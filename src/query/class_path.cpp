@@ -13,6 +13,7 @@
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
 #include "search/flow_options.hpp"
+#include "strata/faceted_surface.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/curve/newton.hpp"
 
@@ -110,6 +111,9 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   static_cast<Geodesic&>(result) = std::move(geodesic);
   result.message =
       is_point ? "the polyline comes undone: its ends are one point, and so is the path" : std::string(result.reason);
+  if (result.status != Status::ok && detail::is_kinked(surface)) {
+    result.message = "polylines are pulled taut on one smooth face only, and this surface has edges";
+  }
   result.doubts = {Doubt::rivals_not_sought};
   if (result.status == Status::ok) {
     result.candidates.push_back({result.length, result.length_error, result.locally_shortest, result.points});

@@ -14,6 +14,7 @@
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
 #include "search/explain.hpp"
+#include "strata/faceted_surface.hpp"
 
 namespace taut {
 namespace {
@@ -100,6 +101,9 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   }
   ClosedGeodesic result = found ? *std::move(found) : unfinished(shortening, status, problem);
   if (result.status != Status::ok) result.obstacle = {Obstacle::Kind::no_geodesic};
+  if (result.status != Status::ok && detail::is_kinked(surface)) {
+    result.message = "loops are pulled taut on one smooth face only, and this surface has edges";
+  }
   if (!found && shortening.strand().length() < setting.gap) {
     result.obstacle = {Obstacle::Kind::contracts};
     result.message = detail::explain(result);

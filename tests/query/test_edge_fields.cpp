@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "taut/query/class_path.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/query/distance_matrix.hpp"
 #include "taut/query/farthest_points.hpp"
@@ -81,6 +83,16 @@ TEST(EdgeFields, PartsReachOverEdges) {
     const double z = parts.mesh.vertices(2, v);
     if (std::abs(z) > 0.1) EXPECT_EQ(parts.label[static_cast<std::size_t>(v)], z > 0 ? 0 : 1) << z;
   }
+}
+
+TEST(EdgeFields, PolylinesOverEdgesAreRefused) {
+  Points polyline(3, 5);
+  polyline << 2, 2, 0, -2, -2,  //
+      0, 0, 0.5, 0, 0,          //
+      0.9, 1, 1, 1, 0.9;
+  const PathResult found = path_in_class(parse_surface("max(x^2+y^2-4, abs(z)-1)"), polyline);
+  EXPECT_NE(found.status, Status::ok);
+  EXPECT_NE(found.message.find("edges"), std::string::npos) << found.message;
 }
 
 TEST(EdgeFields, MeansAreRefused) {
