@@ -126,8 +126,8 @@ std::string on_doubt(const PathResult& result, Doubt doubt) {
       return fmt::format("a shorter path may exist: cells of {:.3g} are coarser than the surface bends, and miss ways",
                          result.cell);
     case Doubt::edges_not_searched:
-      return "a shorter path may exist: over the edges of this surface it is looked for by Newton's method on the "
-             "convergent march only";
+      return "a shorter path may exist: over the edges of this surface it was not looked for (they are too many, or "
+             "another method or march than the default was asked for)";
     case Doubt::edges_failed: return "a shorter path may exist: over the edges of this surface no way was found";
     case Doubt::budget_spent: return "a shorter path may exist: it was not looked for everywhere";
     case Doubt::random_search:

@@ -64,7 +64,8 @@ std::shared_ptr<const FacetGraph> FacetSearch::graph(const Box& box, double cell
   surface_->scale = box.diagonal();
   try {
     const double size = options_.cell > 0 ? options_.cell : cell_size_for(*surface_, box, cells, context_);
-    return std::make_shared<const FacetGraph>(*surface_, box, size, context_);
+    auto graph = std::make_shared<const FacetGraph>(*surface_, box, size, context_);
+    return graph->complete() ? graph : nullptr;
   } catch (const EmptySurface&) {
     return nullptr;
   }

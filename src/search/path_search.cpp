@@ -121,7 +121,9 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
              (now.has_path() ? !have_room(*now.best, now.doublings) : now.is_apart());
     case Rung::fan: return fan_can_help(now);
     case Rung::border: {
-      const bool met = now.best && (now.best->status == Status::left_domain || (now.has_path() && now.doubts.any()));
+      // A graph of a fit takes seconds: only where the path leaves the samples.
+      const bool doubted = now.has_path() && now.doubts.any() && surface_.samples() == nullptr;
+      const bool met = now.best && (now.best->status == Status::left_domain || doubted);
       return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
     }
   }

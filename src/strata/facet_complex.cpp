@@ -25,6 +25,7 @@ std::optional<FacetComplex> FacetComplex::of(const Surface& surface, const Box& 
   try {
     const double size = cell_size_for(*complex.surface, wide, kCells, context);
     const FacetGraph graph(*complex.surface, wide, size, context);
+    if (!graph.complete()) return std::nullopt;
     complex.network = edge_network(*complex.surface, graph, context);
   } catch (const EmptySurface&) {
     return std::nullopt;

@@ -38,6 +38,10 @@ constexpr double kSameNode = 1e-3;
 constexpr double kWholeTurn = 6.28;
 /// Angles above pi by this, radians, make a corner reach into a face.
 constexpr double kReflex = 1e-6;
+/// Points tried on faces and edges, times the surface's conditions (a formula's length grows with its kinks), before a
+/// graph is given up. A can takes 4e4, three cylinders 1e5, a polyhedron of 20 faces 2e6; a hand of blended capsules,
+/// whose kinks are all seams, would take a minute.
+constexpr Index kMostWork = 5'000'000;
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
 void insert_face(std::vector<int>& faces, int face) {
@@ -116,6 +120,10 @@ FacetGraph::FacetGraph(FacetedSurface& surface, const Box& box, double size, con
     const Box cell = grid.box(i);
     surface.undecided(cell, kinks);
     fill_cell(surface, cell, kinks);
+    if (num_projected_ * surface.num_conditions() > kMostWork) {
+      complete_ = false;
+      return;
+    }
   }
   if (nodes_.empty()) throw EmptySurface("no surface point was found in the cells");
   link(surface);
@@ -167,7 +175,7 @@ void FacetGraph::add(double scale, FacetNode node) {
 /// sheet beyond its face, where a start on the wrong side ends.
 template <class IsRight>
 bool FacetGraph::find_point(FacetedSurface& surface, const Box& cell, int face, const std::vector<int>& conditions,
-                            bool try_corners, const IsRight& is_right, Point3& x) const {
+                            bool try_corners, const IsRight& is_right, Point3& x) {
   const Point3 centre = (cell.lower + cell.upper) / 2;
   const double near = kNearCell * size_;
   for (int start = -1; start < (try_corners ? 8 : 0); ++start) {
@@ -182,6 +190,7 @@ bool FacetGraph::find_point(FacetedSurface& surface, const Box& cell, int face, 
     }
     x = centre;
     for (int a = 0; start >= 0 && a < 3; ++a) x(a) = (start >> a & 1) != 0 ? cell.upper(a) : cell.lower(a);
+    ++num_projected_;
     if (surface.project(face, conditions, x) && (x - centre).norm() <= near && is_right(x)) return true;
   }
   return false;

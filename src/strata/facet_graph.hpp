@@ -44,6 +44,9 @@ class FacetGraph {
   [[nodiscard]] const Box& box() const { return box_; }
   [[nodiscard]] double size() const { return size_; }
   [[nodiscard]] Index num_cells() const { return num_cells_; }
+  /// False where there are so many faces and edges in each cell that they are not looked for in all of them: then the
+  /// graph has no links.
+  [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] const std::vector<FacetNode>& nodes() const { return nodes_; }
   [[nodiscard]] std::span<const FacetLink> links(std::uint32_t node) const {
     return {links_.data() + first_[node], links_.data() + first_[node + 1]};
@@ -67,13 +70,15 @@ class FacetGraph {
   /// A point of the face with these conditions zero near the cell's centre that `is_right` accepts.
   template <class IsRight>
   [[nodiscard]] bool find_point(FacetedSurface& surface, const Box& cell, int face, const std::vector<int>& conditions,
-                                bool try_corners, const IsRight& is_right, Point3& x) const;
+                                bool try_corners, const IsRight& is_right, Point3& x);
   void fill_cell(FacetedSurface& surface, const Box& cell, const std::vector<int>& kinks);
   void link(FacetedSurface& surface);
 
   Box box_;
   double size_;
   Index num_cells_ = 0;
+  Index num_projected_ = 0;  // points tried on faces and edges
+  bool complete_ = true;
   std::vector<FacetNode> nodes_;
   std::vector<std::uint32_t> reflex_;
   std::vector<std::size_t> first_;  // of a node's links; one more than nodes

@@ -50,7 +50,9 @@ TEST(Explain, DoubtsInWords) {
     EXPECT_EQ(doubted({doubt}), may + "cells of 0.25 are coarser than the surface bends, and miss ways");
   }
   EXPECT_EQ(doubted({Doubt::edges_not_searched}),
-            may + "over the edges of this surface it is looked for by Newton's method on the convergent march only");
+            may +
+                "over the edges of this surface it was not looked for (they are too many, or another method or march "
+                "than the default was asked for)");
   EXPECT_EQ(doubted({Doubt::edges_failed}), may + "over the edges of this surface no way was found");
   EXPECT_EQ(doubted({Doubt::budget_spent}), may + "it was not looked for everywhere");
   EXPECT_EQ(doubted({Doubt::random_search, Doubt::rivals_not_sought}), "");
