@@ -17,7 +17,8 @@ struct FacetComplex {
   EdgeNetwork network;
 
   /// Nothing where the surface has neither edges nor a border, or where they are not looked for: surfaces that are
-  /// fitted to samples, others than those of one equation in R^3, and those with too many kinks (FacetGraph::complete). Throws OutOfMemory, Cancelled.
+  /// fitted to samples, others than those of one equation in R^3, and those with too many kinks (FacetGraph::complete).
+  /// Throws OutOfMemory, Cancelled.
   [[nodiscard]] static std::optional<FacetComplex> of(const Surface& surface, const Box& box, const Context& context);
 };
 
