@@ -4,7 +4,7 @@
 
 namespace taut::detail {
 
-/// Which ways are offered as starts. Measured on 2,000 random pairs each of 14 surfaces (docs/shortest.md, Measured):
+/// Which ways are offered as starts. Measured on 2,000 random pairs each of 14 surfaces (docs/measured/shortest.md):
 /// none too long by two fields.
 struct RivalRules {
   double excess = 0.15;    ///< ways up to this part longer than the shortest, by the marched distances, are rivals
@@ -22,7 +22,7 @@ struct RivalRules {
 };
 
 /// When a table of distances is made, on which cells, and what it is believed. By the table 1 of 28,000 random pairs on
-/// the tangle cube came out too long, by 2.5e-4, none on 20 other surfaces (docs/shortest.md, Measured).
+/// the tangle cube came out too long, by 2.5e-4, none on 20 other surfaces (docs/measured/shortest.md).
 struct TableRules {
   double worthwhile = 0.2;  ///< it costs less than this part of marching from both ends of each pair
   /// Cells as coarse as may be: the normal turns by at most this (radians) from one to the next in that part of them

@@ -11,7 +11,7 @@
 namespace taut {
 namespace {
 
-// The paper's fast marching does not converge on the surface's own cells: docs/march.md has the figures.
+// The paper's fast marching does not converge on the surface's own cells: docs/measured/march.md has the figures.
 TEST(AxisMarch, HasTheDocumentedBiasOnTheSphere) {
   const Surface sphere = test::unit_sphere();
   const Vector source = Eigen::Vector3d(0.36, -0.48, 0.8);

@@ -26,7 +26,7 @@ struct MarchOptions {
 /// keep the distance infinity: refine the cells then.
 ///
 /// Properties: 0 at a source; distance >= |p - q|; with several sources the minimum of the single fields; the same
-/// bits for the same input. Accuracy: docs/march.md. Cost: O(N 3^d + N log N); (d + 3) doubles a cell.
+/// bits for the same input. Accuracy: docs/measured/march.md. Cost: O(N 3^d + N log N); (d + 3) doubles a cell.
 /// Throws InvalidArgument when a source or target has the wrong dimension, is not finite, no cell lies around a
 /// source, or the radius is negative; SingularPoint when the surface is singular there; OutOfMemory, Cancelled.
 [[nodiscard]] DistanceField march(const Surface& surface, SurfaceCells& cells, const PointsIn& sources,

@@ -14,7 +14,7 @@ enum class Doubt : std::uint8_t {
   cells_spent,         ///< as many cells as may grow did not lead from one end to the other: found by walks
   coarse_cells,        ///< the cells are coarser than the surface bends, and miss ways
   sharp_bends,         ///< next to the path the surface bends within a cell
-  edges_not_searched,  ///< over edges paths are looked for by Newton's method on the convergent march only
+  edges_not_searched,  ///< over edges none was looked for: they are too many, or not by this method or march
   edges_failed,        ///< over the edges of the surface no way was found, only one on smooth faces
   budget_spent,        ///< the work allowed was used up before every way was looked at
   random_search,       ///< too many dimensions for cells: other ways were looked for at random
