@@ -233,7 +233,7 @@ std::string FormulaKinks::text(NodeId root) const {
       case Op::variable:
         piece.text = dim_ <= 4 ? std::string(1, kLetters[node.a]) : fmt::format("x{}", node.a + 1);
         break;
-      case Op::negate: piece = {"-" + with_rank(node.a, 1), 0}; break;
+      case Op::negate: piece = {fmt::format("-{}", with_rank(node.a, 1)), 0}; break;
       case Op::square: piece = {with_rank(node.a, 3) + "^2", 2}; break;
       case Op::odd_power: piece = {with_rank(node.a, 3) + fmt::format("^{}", node.b), 2}; break;
       case Op::add: {
