@@ -7,7 +7,7 @@
 
 namespace taut::app {
 
-/// The `flow` entry of a path's JSON (docs/command_line.md).
+/// The `flow` entry of a path's JSON (docs/json.md).
 [[nodiscard]] nlohmann::ordered_json flow_json(const FlowSummary& summary);
 
 /// The same for a person.

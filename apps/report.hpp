@@ -10,7 +10,7 @@
 
 namespace taut::app {
 
-/// The JSON of one path, as the contract in docs/command_line.md spells it.
+/// The JSON of one path, as the contract in docs/json.md spells it.
 [[nodiscard]] nlohmann::ordered_json path_json(const Surface& surface, const PathResult& result,
                                                const PathOptions& options, double surface_seconds,
                                                double total_seconds);
