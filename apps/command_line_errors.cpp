@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "taut/core/nearest_name.hpp"
+#include "taut/core/error.hpp"
 
 namespace taut::app {
 namespace {

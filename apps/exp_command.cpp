@@ -19,8 +19,8 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/csv_rows.hpp"
-#include "taut/query/ray.hpp"
+#include "taut/io/read_points.hpp"
+#include "taut/query/tangent_maps.hpp"
 #include "vector_text.hpp"
 
 namespace taut::app {

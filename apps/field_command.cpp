@@ -25,7 +25,6 @@
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/query/field.hpp"
-#include "taut/query/isolines.hpp"
 
 namespace taut::app {
 namespace {

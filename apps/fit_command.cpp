@@ -15,7 +15,7 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/model_file.hpp"
+#include "taut/io/read_surface.hpp"
 
 namespace taut::app {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "taut/curve/flow_summary.hpp"
+#include "taut/curve/flow.hpp"
 #include "taut/view/scene.hpp"
 
 namespace taut::app {

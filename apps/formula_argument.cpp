@@ -10,7 +10,6 @@
 
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/unknown_name.hpp"
 
 namespace taut::app {
 namespace {

@@ -3,7 +3,7 @@
 #include "checks.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_height_field.hpp"
+#include "taut/io/read_surface.hpp"
 #include "taut/surface/height_field.hpp"
 
 namespace taut::app {

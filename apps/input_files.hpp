@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 
 namespace taut::app {
 

@@ -14,13 +14,9 @@
 #include "input_files.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/model_file.hpp"
-#include "taut/io/read_clauses.hpp"
-#include "taut/io/read_neural_network.hpp"
 #include "taut/io/read_point_cloud.hpp"
 #include "taut/io/read_points.hpp"
-#include "taut/io/read_scene.hpp"
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 
 namespace taut::app {
 namespace {

@@ -17,8 +17,8 @@
 #include "examples.hpp"
 #include "help_format.hpp"
 #include "points_argument.hpp"
+#include "taut/core/context.hpp"
 #include "taut/core/error.hpp"
-#include "taut/core/threads.hpp"
 
 namespace taut::app {
 namespace {

@@ -13,7 +13,6 @@
 
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
-#include "taut/io/write_npy_header.hpp"
 
 namespace taut::app {
 namespace {

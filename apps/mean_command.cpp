@@ -13,7 +13,7 @@
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/read_points.hpp"
-#include "taut/query/karcher_mean.hpp"
+#include "taut/query/point_sets.hpp"
 #include "terminal.hpp"
 #include "vector_text.hpp"
 

@@ -3,7 +3,7 @@
 #include "checks.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_neural_network.hpp"
+#include "taut/io/read_surface.hpp"
 
 namespace taut::app {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "taut/core/types.hpp"
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 
 namespace taut::app {
 

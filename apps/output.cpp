@@ -22,8 +22,7 @@
 #include "taut/io/output_file.hpp"
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/surface_mesh.hpp"
-#include "taut/view/write_html.hpp"
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 
 namespace taut::app {
 namespace {

@@ -9,7 +9,7 @@
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/read_points.hpp"
-#include "taut/query/class_path.hpp"
+#include "taut/query/path.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut::app {

@@ -27,7 +27,7 @@
 #include "report.hpp"
 #include "surface_request.hpp"
 #include "taut/core/error.hpp"
-#include "taut/curve/verify.hpp"
+#include "taut/curve/exponential_map.hpp"
 #include "taut/query/path.hpp"
 #include "timer.hpp"
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "report.hpp"
-#include "taut/curve/evenly_spaced.hpp"
+#include "taut/curve/spectral_curve.hpp"
 
 namespace taut::app {
 namespace {

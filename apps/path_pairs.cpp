@@ -15,7 +15,7 @@
 #include "pairs_file.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 
 namespace taut::app {
 namespace {

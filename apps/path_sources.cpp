@@ -14,7 +14,7 @@
 #include "path_lines.hpp"
 #include "points_argument.hpp"
 #include "report.hpp"
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 #include "terminal.hpp"
 
 namespace taut::app {

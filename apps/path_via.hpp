@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "taut/query/via.hpp"
+#include "taut/query/path.hpp"
 #include "taut/view/scene.hpp"
 
 namespace taut::app {

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 #include "taut/surface/surface.hpp"
 

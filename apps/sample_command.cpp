@@ -16,7 +16,7 @@
 #include "taut/core/error.hpp"
 #include "taut/io/output_file.hpp"
 #include "taut/io/write_geometry.hpp"
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 #include "terminal.hpp"
 #include "vector_text.hpp"
 

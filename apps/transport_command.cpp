@@ -16,7 +16,7 @@
 #include "report.hpp"
 #include "taut/core/error.hpp"
 #include "taut/io/read_points.hpp"
-#include "taut/query/transport.hpp"
+#include "taut/query/tangent_maps.hpp"
 #include "terminal.hpp"
 #include "vector_text.hpp"
 

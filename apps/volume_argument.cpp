@@ -6,7 +6,7 @@
 #include "help_format.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 #include "taut/surface/volume.hpp"
 
 namespace taut::app {

@@ -18,7 +18,7 @@
 #include "taut/core/error.hpp"
 #include "taut/io/read_points.hpp"
 #include "taut/io/write_geometry.hpp"
-#include "taut/query/voronoi.hpp"
+#include "taut/query/point_sets.hpp"
 #include "terminal.hpp"
 
 namespace taut::app {

@@ -7,9 +7,8 @@
 #include <cmath>
 #include <vector>
 
-#include "taut/cells/crossing.hpp"
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "cells/crossing.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/surface/formula.hpp"
 

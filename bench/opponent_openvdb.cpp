@@ -14,8 +14,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace {

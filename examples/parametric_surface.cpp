@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "taut/query/path.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/formula.hpp"
-#include "taut/surface/rbf.hpp"
 
 using Eigen::Vector3d;
 

@@ -10,8 +10,8 @@
 #include <string>
 
 #include "io/readers.hpp"
-#include "taut/io/csv_rows.hpp"
 #include "taut/io/read_point_cloud.hpp"
+#include "taut/io/read_points.hpp"
 
 namespace {
 

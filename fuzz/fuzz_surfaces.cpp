@@ -14,7 +14,6 @@
 #include "io/named_arrays.hpp"
 #include "io/volume_readers.hpp"
 #include "taut/surface/formula.hpp"
-#include "taut/surface/scene_text.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include "distance_matrix.hpp"
 #include "inertia.hpp"
 #include "taut/query/surface_mesh.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut::paper {
 namespace {

@@ -8,8 +8,7 @@
 
 #include "parts.hpp"
 #include "space_view.hpp"
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut::paper {

@@ -11,8 +11,8 @@
 #include "rolled_sheet.hpp"
 #include "taut/query/path.hpp"
 #include "taut/query/surface_mesh.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/projection.hpp"
-#include "taut/surface/rbf.hpp"
 
 namespace taut::paper {
 namespace {

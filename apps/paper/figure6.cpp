@@ -8,12 +8,12 @@
 #include "cell_faces.hpp"
 #include "models.hpp"
 #include "parts.hpp"
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/march/march.hpp"
-#include "taut/query/farthest_points.hpp"
 #include "taut/query/field.hpp"
 #include "taut/query/path.hpp"
+#include "taut/query/point_sets.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut::paper {

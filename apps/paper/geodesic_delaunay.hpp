@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/cells/mesh_surface.hpp"
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 
 namespace taut::paper {
 

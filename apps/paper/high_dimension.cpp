@@ -9,8 +9,8 @@
 #include "parts.hpp"
 #include "random_points.hpp"
 #include "taut/query/path.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/formula.hpp"
-#include "taut/surface/rbf.hpp"
 
 namespace taut::paper {
 namespace {

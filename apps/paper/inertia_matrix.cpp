@@ -10,10 +10,10 @@
 
 #include "applications.hpp"
 #include "models.hpp"
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 #include "taut/query/surface_mesh.hpp"
 #include "taut/surface/formula.hpp"
 

@@ -12,7 +12,7 @@
 #include "curves.hpp"
 #include "distance_matrix.hpp"
 #include "rolled_sheet.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut::paper {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "applications.hpp"
 #include "models.hpp"
+#include "taut/query/path.hpp"
 #include "taut/query/surface_mesh.hpp"
-#include "taut/query/via.hpp"
 
 namespace taut::paper {
 namespace {

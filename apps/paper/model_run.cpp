@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 
 namespace taut::paper {
 namespace {

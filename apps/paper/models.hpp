@@ -6,7 +6,7 @@
 
 #include "study.hpp"
 #include "taut/core/mesh.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::paper {

@@ -2,11 +2,9 @@
 
 #include <cmath>
 
-#include "taut/cells/envelope.hpp"
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
-#include "taut/march/descend.hpp"
+#include "taut/march/march.hpp"
 
 namespace taut::paper {
 

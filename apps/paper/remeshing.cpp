@@ -8,7 +8,7 @@
 #include "applications.hpp"
 #include "geodesic_delaunay.hpp"
 #include "models.hpp"
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
 
 namespace taut::paper {

@@ -9,7 +9,7 @@
 #include "drawing.hpp"
 #include "table.hpp"
 #include "taut/view/scene.hpp"
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 
 namespace taut::paper {
 

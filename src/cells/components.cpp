@@ -1,4 +1,4 @@
-#include "taut/cells/components.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include "core/disjoint_sets.hpp"
 

@@ -1,11 +1,11 @@
-#include "taut/cells/crossing.hpp"
+#include "cells/crossing.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-namespace taut {
+namespace taut::detail {
 namespace {
 
 constexpr Index kBlock = 256;
@@ -239,4 +239,4 @@ void CrossingTest::test_domain() {
   });
 }
 
-}  // namespace taut
+}  // namespace taut::detail

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "taut/cells/crossing.hpp"
+#include "cells/crossing.hpp"
 
 namespace taut::detail {
 

@@ -1,4 +1,4 @@
-#include "taut/cells/find_box.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "cells/crossed.hpp"
+#include "cells/crossing.hpp"
 #include "cells/crossing_pool.hpp"
 #include "cells/outermost.hpp"
 #include "cells/refine.hpp"
 #include "core/parallel.hpp"
 #include "surface/describe.hpp"
 #include "taut/cells/cell_grid.hpp"
-#include "taut/cells/crossing.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
@@ -255,7 +255,7 @@ SurfaceExtent find_extent(const Surface& surface, const PointsIn& near, const Co
   if (surface.samples() != nullptr && surface.samples()->size() > 0) {
     return all_in(with_margin(bounding_box(surface.samples()->points), kSampleMargin));
   }
-  const CrossingTest test(surface, Vector::Zero(surface.dim()), 1);
+  const detail::CrossingTest test(surface, Vector::Zero(surface.dim()), 1);
   return test.has_bounds() ? by_bounds(surface, near, context) : by_trial(surface, near, context);
 }
 
@@ -268,7 +268,7 @@ SurfaceExtent through_window(const Surface& surface, const SurfaceExtent& extent
   SurfaceExtent seen = extent;
   seen.window = window;
   seen.box = intersection(window, extent.whole);
-  if (CrossingTest(surface, Vector::Zero(surface.dim()), 1).has_bounds()) {
+  if (detail::CrossingTest(surface, Vector::Zero(surface.dim()), 1).has_bounds()) {
     const Box tight = shrink(surface, seen.box, context);
     if (tight.dim() != 0) seen.box = tight;
   }

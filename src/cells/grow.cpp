@@ -1,4 +1,4 @@
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
 #include <string>

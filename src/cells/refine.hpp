@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "taut/cells/crossing.hpp"
+#include "cells/crossing.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "cells/crossing.hpp"
 #include "cells/domain_edge.hpp"
 #include "cells/memory_guard.hpp"
 #include "cells/refine.hpp"
 #include "core/parallel.hpp"
 #include "surface/describe.hpp"
-#include "taut/cells/crossing.hpp"
-#include "taut/cells/envelope.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
@@ -176,7 +176,7 @@ struct SurfaceCells::Growth {
 
   Surface surface;
   Context context;
-  CrossingTest test;
+  detail::CrossingTest test;
   int level;          // a tile is 2^level cells wide
   CellGrid tiles;     // those resolved or pending
   std::size_t limit;  // bytes

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <system_error>
 
-#include "taut/core/threads.hpp"
+#include "taut/core/context.hpp"
 
 // TBB's own synchronisation is invisible to the thread sanitizer: under it, plain threads take its place.
 #if defined(TAUT_THREADS) && defined(__SANITIZE_THREAD__)

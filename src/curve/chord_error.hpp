@@ -1,7 +1,7 @@
 #pragma once
 
 #include "taut/core/types.hpp"
-#include "taut/curve/flow_summary.hpp"
+#include "taut/curve/flow.hpp"
 
 namespace taut::detail {
 

@@ -1,4 +1,4 @@
-#include "taut/curve/evenly_spaced.hpp"
+#include "taut/curve/spectral_curve.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 // Notation: e the unit vector of the surface across the ray, v = x', |v| = 1, and a = II(v, v) of ray_field.hpp;
 // K = <II(e, e), a> - |II(v, e)|^2 (Gauss' equation).
 
-#include "taut/curve/geodesic_scales.hpp"
+#include "taut/curve/exponential_map.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

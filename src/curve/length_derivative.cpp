@@ -2,7 +2,7 @@
 // -int x'' . delta x ds, what they do within the surface not counting. x'' = -J^T lambda, lambda = (J J^T)^-1 (x' . H_i
 // x')_i, so that the integrand is -lambda . dF/dc.
 
-#include "taut/curve/length_derivative.hpp"
+#include "taut/curve/geodesic.hpp"
 
 #include <Eigen/Cholesky>
 

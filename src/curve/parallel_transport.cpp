@@ -5,7 +5,7 @@
 // less than a radian. At the end of every step E is brought back to the tangent space there and made orthonormal again
 // by the nearest such basis (polar factor), so that lengths and angles never drift.
 
-#include "taut/curve/parallel_transport.hpp"
+#include "taut/curve/exponential_map.hpp"
 
 #include <fmt/format.h>
 

@@ -12,8 +12,6 @@
 
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
-#include "taut/curve/geodesic_scales.hpp"
-#include "taut/curve/parallel_transport.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut::detail {

@@ -1,9 +1,8 @@
-#include "taut/curve/verify.hpp"
+#include "taut/curve/exponential_map.hpp"
 
 #include <string>
 
 #include "taut/core/error.hpp"
-#include "taut/curve/exponential_map.hpp"
 
 namespace taut {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "fan/geodesic_fan.hpp"
 #include "taut/core/context.hpp"
-#include "taut/fan/geodesic_fan.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {

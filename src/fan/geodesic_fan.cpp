@@ -1,4 +1,4 @@
-#include "taut/fan/geodesic_fan.hpp"
+#include "fan/geodesic_fan.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -18,7 +18,7 @@
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
-namespace taut {
+namespace taut::detail {
 namespace {
 
 using detail::ExpPatch;
@@ -539,4 +539,4 @@ std::vector<FanHit> GeodesicFan::locate(const PointsIn& targets, const Context& 
   return hits;
 }
 
-}  // namespace taut
+}  // namespace taut::detail

@@ -1,4 +1,4 @@
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 
 #include <cerrno>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "taut/io/model_file.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include <array>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "taut/io/read_clauses.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include "io/input_file.hpp"
 

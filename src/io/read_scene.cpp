@@ -1,7 +1,7 @@
-#include "taut/io/read_scene.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include "io/input_file.hpp"
-#include "taut/surface/scene_text.hpp"
+#include "taut/surface/formula.hpp"
 
 namespace taut {
 

@@ -1,4 +1,4 @@
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include <algorithm>
 #include <array>

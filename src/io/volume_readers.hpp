@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "io/input_file.hpp"
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 
 namespace taut::detail {
 

@@ -1,4 +1,4 @@
-#include "taut/io/write_npy_header.hpp"
+#include "taut/io/output_file.hpp"
 
 #include <string>
 #include <string_view>

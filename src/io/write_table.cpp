@@ -3,7 +3,7 @@
 #include <string>
 
 #include "io/geometry.hpp"
-#include "taut/io/write_npy_header.hpp"
+#include "taut/io/output_file.hpp"
 
 namespace taut::detail {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/march/barrier.hpp"
+#include "march/barrier.hpp"
 
 #include <cmath>
 #include <limits>
@@ -6,7 +6,7 @@
 #include "cells/normal_turn.hpp"
 #include "march/stencil.hpp"
 
-namespace taut {
+namespace taut::detail {
 std::optional<Barrier> find_barrier(const SurfaceCells& cells, const DistanceField& field, const VectorIn& x) {
   if (field.at_centres) return std::nullopt;  // it passes wherever cells share a face
   detail::Stencil stencil(cells.dim());
@@ -27,4 +27,4 @@ std::optional<Barrier> find_barrier(const SurfaceCells& cells, const DistanceFie
   return barrier;
 }
 
-}  // namespace taut
+}  // namespace taut::detail

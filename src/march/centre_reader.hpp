@@ -10,7 +10,7 @@
 #include "march/cell_steps.hpp"
 #include "surface/describe.hpp"
 #include "taut/core/error.hpp"
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
 namespace taut::detail {
 

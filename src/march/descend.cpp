@@ -1,4 +1,4 @@
-#include "taut/march/descend.hpp"
+#include "taut/march/march.hpp"
 
 #include <cmath>
 #include <limits>

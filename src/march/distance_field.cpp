@@ -1,4 +1,4 @@
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
 #include <limits>
 #include <string>

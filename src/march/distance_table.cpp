@@ -1,4 +1,4 @@
-#include "taut/march/distance_table.hpp"
+#include "march/distance_table.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 
-namespace taut {
+namespace taut::detail {
 namespace {
 
 /// Landmarks lie no farther than this from any way, in spacings.
@@ -358,4 +358,4 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
   return paths;
 }
 
-}  // namespace taut
+}  // namespace taut::detail

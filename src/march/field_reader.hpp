@@ -11,7 +11,7 @@
 
 #include "march/arrival.hpp"
 #include "march/surroundings.hpp"
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
 namespace taut::detail {
 

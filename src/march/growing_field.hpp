@@ -6,7 +6,7 @@
 
 #include "march/front.hpp"
 #include "march/methods.hpp"
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
 namespace taut::detail {
 

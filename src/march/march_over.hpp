@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "march/cell_map.hpp"
+#include "march/start_paths.hpp"
 #include "taut/march/march.hpp"
-#include "taut/march/start_paths.hpp"
 
 namespace taut::detail {
 

@@ -1,4 +1,4 @@
-#include "taut/march/start_paths.hpp"
+#include "march/start_paths.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,8 +18,7 @@
 #include "march/surroundings.hpp"
 #include "taut/core/error.hpp"
 
-namespace taut {
-namespace detail {
+namespace taut::detail {
 namespace {
 
 /// The slices between p and q on which ways are told apart, by the part of the way that lies behind: in the middle, and
@@ -223,12 +222,10 @@ std::vector<StartPath> start_paths_over(const Surface& surface, const SurfaceCel
   });
 }
 
-}  // namespace detail
-
 std::vector<StartPath> start_paths(const Surface& surface, const SurfaceCells& cells, const DistanceField& from_p,
                                    const DistanceField& from_q, const StartPathOptions& options,
                                    const Context& context) {
-  return detail::start_paths_over(surface, cells, nullptr, from_p, from_q, options, context);
+  return start_paths_over(surface, cells, nullptr, from_p, from_q, options, context);
 }
 
-}  // namespace taut
+}  // namespace taut::detail

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "taut/core/error.hpp"
-#include "taut/curve/evenly_spaced.hpp"
 #include "taut/curve/newton.hpp"
+#include "taut/curve/spectral_curve.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut {

@@ -10,15 +10,21 @@
 #include "core/parallel.hpp"
 #include "curve/polished.hpp"
 #include "fan/fan_answers.hpp"
+#include "fan/geodesic_fan.hpp"
 #include "search/cell_levels.hpp"
 #include "strata/faceted_surface.hpp"
 #include "surface/describe.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
-#include "taut/fan/geodesic_fan.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut {
+
+using detail::FanCurve;
+using detail::FanHit;
+using detail::FanOptions;
+using detail::GeodesicFan;
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -15,13 +15,16 @@
 
 #include "core/parallel.hpp"
 #include "fan/fan_answers.hpp"
+#include "fan/geodesic_fan.hpp"
 #include "search/cell_levels.hpp"
 #include "strata/faceted_surface.hpp"
 #include "surface/point_text.hpp"
 #include "taut/core/error.hpp"
-#include "taut/fan/geodesic_fan.hpp"
 
 namespace taut {
+
+using detail::GeodesicFan;
+
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "strata/facet_complex.hpp"
-#include "taut/query/surface_edges.hpp"
+#include "taut/query/surface_summary.hpp"
 
 namespace taut::detail {
 

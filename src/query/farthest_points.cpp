@@ -1,6 +1,6 @@
 // Farthest-point sampling by marched distances: each march goes only as far as the new point may be the nearest.
 
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <algorithm>
 #include <cmath>

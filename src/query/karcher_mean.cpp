@@ -3,7 +3,7 @@
 // known from the geodesic's scales: 1 along it and L M12 / m12 across. Elsewhere, and where the Hessian is not
 // definite, it is gradient descent, with steps halved until the variance falls.
 
-#include "taut/query/karcher_mean.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,6 @@
 #include "strata/faceted_surface.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
-#include "taut/curve/geodesic_scales.hpp"
 
 namespace taut {
 namespace {

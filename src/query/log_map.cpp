@@ -4,7 +4,7 @@
 // good enough for its length is not for its direction: Newton's method goes on from there, and rays that are aimed at
 // q have the last word.
 
-#include "taut/query/log_map.hpp"
+#include "taut/query/tangent_maps.hpp"
 
 #include <cmath>
 #include <utility>

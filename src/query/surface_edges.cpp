@@ -1,11 +1,11 @@
-#include "taut/query/surface_edges.hpp"
+#include "taut/query/surface_summary.hpp"
 
 #include <cstddef>
 #include <optional>
 
 #include "query/edges_of.hpp"
 #include "strata/facet_complex.hpp"
-#include "taut/cells/find_box.hpp"
+#include "taut/cells/find_cells.hpp"
 
 namespace taut {
 namespace {

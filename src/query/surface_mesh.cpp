@@ -13,8 +13,7 @@
 #include "search/cell_levels.hpp"
 #include "strata/facet_complex.hpp"
 #include "strata/sharp_mesh.hpp"
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {

@@ -11,11 +11,10 @@
 #include "search/cell_levels.hpp"
 #include "strata/facet_complex.hpp"
 #include "strata/sharp_mesh.hpp"
-#include "taut/cells/components.hpp"
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/mesh_surface.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 namespace taut {
 namespace {

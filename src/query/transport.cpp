@@ -4,7 +4,7 @@
 // path. On a surface in R^3 a geodesic's tangent v and n x v are carried parallel along it, so a vector's two
 // components in that frame stay as they are: that serves any number of targets of a field.
 
-#include "taut/query/transport.hpp"
+#include "taut/query/tangent_maps.hpp"
 
 #include <fmt/format.h>
 

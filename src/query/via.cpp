@@ -1,4 +1,4 @@
-#include "taut/query/via.hpp"
+#include "taut/query/path.hpp"
 
 #include <fmt/format.h>
 

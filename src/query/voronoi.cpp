@@ -4,7 +4,7 @@
 // where the first one ends is bisected, all edges at a time. In a face with two labels the two such places are joined;
 // in one with three labels, all three with the place where the parts meet.
 
-#include "taut/query/voronoi.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <algorithm>
 #include <array>

@@ -11,10 +11,7 @@
 #include "search/cell_size.hpp"
 #include "search/normal_turns.hpp"
 #include "surface/point_text.hpp"
-#include "taut/cells/components.hpp"
-#include "taut/cells/envelope.hpp"
-#include "taut/cells/grow.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 

@@ -7,11 +7,10 @@
 
 #include "march/cell_map.hpp"
 #include "search/sharp_bends.hpp"
-#include "taut/cells/cell_counts.hpp"
-#include "taut/cells/find_box.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/cells/surface_cells.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
+#include "taut/core/types.hpp"
 #include "taut/search/path_options.hpp"
 #include "taut/surface/surface.hpp"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/core/box.hpp"
+#include "taut/core/types.hpp"
 #include "taut/surface/point_cloud.hpp"
 
 namespace taut::detail {

@@ -158,8 +158,9 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
   const double start_length = polyline_length(start);
   switch (options_.method) {
     case CorrectionMethod::newton:
-      if (choice.rough) geodesic = newton(worker).refine(*choice.rough, context_);
-      if (!choice.rough || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
+      const bool begun = choice.rough.num_elements() > 0;
+      if (begun) geodesic = newton(worker).refine(choice.rough, context_);
+      if (!begun || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
       break;
     case CorrectionMethod::flow: {
       FlowResult flowed = correct_flow(surface_, start, flow_options(options_, lattice), context_);
@@ -212,7 +213,7 @@ std::vector<Corrector::Choice> Corrector::choose(const Starts& given) {
         // What the curve may yet come to, at least, if it came to rest.
         const bool at_rest = std::isfinite(geodesics[j].length_error);
         const double at_least = at_rest ? geodesics[j].length - geodesics[j].length_error : start.length;
-        choices.push_back({std::min(at_least, start.length / (1 + given.error)), start.points, std::nullopt});
+        choices.push_back({std::min(at_least, start.length / (1 + given.error)), start.points, {}});
       });
   std::vector<PathCandidate> known;
   double shortest = std::numeric_limits<double>::infinity();
@@ -239,7 +240,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   if (selects) {
     choices = choose(starts);
   } else {
-    for (const StartPath& start : starts.paths) choices.push_back({start.length, start.points, std::nullopt});
+    for (const StartPath& start : starts.paths) choices.push_back({start.length, start.points, {}});
   }
   std::optional<Corrected> best;
   std::vector<PathCandidate> candidates;

@@ -41,7 +41,7 @@ class Corrector {
   struct Choice {
     double length;  // about that of the geodesic; where it is known to a few digits, the least that it may be
     Points start;
-    std::optional<SpectralCurve> rough;  // the geodesic, to a few digits
+    SpectralCurve rough;  // the geodesic, to a few digits; empty: not there yet
   };
 
   /// Calls work(j, worker) for j = 0 .. n - 1, several at a time, each with its worker, and take(j) for one after the

@@ -8,9 +8,9 @@
 #include "strata/facet_graph.hpp"
 #include "strata/facet_ways.hpp"
 #include "strata/faceted_surface.hpp"
-#include "taut/cells/find_box.hpp"
-#include "taut/core/box.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/context.hpp"
+#include "taut/core/types.hpp"
 #include "taut/search/path_options.hpp"
 #include "taut/search/path_result.hpp"
 

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "search/facet_search.hpp"
-#include "taut/cells/find_box.hpp"
-#include "taut/core/box.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
 #include "taut/search/path_options.hpp"

@@ -2,10 +2,10 @@
 
 #include <vector>
 
+#include "march/start_paths.hpp"
 #include "search/ground.hpp"
 #include "taut/core/context.hpp"
-#include "taut/march/distance_field.hpp"
-#include "taut/march/start_paths.hpp"
+#include "taut/march/march.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {

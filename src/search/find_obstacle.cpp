@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 namespace taut::detail {
 namespace {

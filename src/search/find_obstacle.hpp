@@ -2,9 +2,9 @@
 
 #include <optional>
 
+#include "march/barrier.hpp"
 #include "taut/core/types.hpp"
-#include "taut/march/barrier.hpp"
-#include "taut/search/obstacle.hpp"
+#include "taut/search/doubt.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {

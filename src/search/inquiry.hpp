@@ -6,13 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "march/barrier.hpp"
 #include "search/start_finder.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
-#include "taut/march/barrier.hpp"
 #include "taut/search/doubt.hpp"
 #include "taut/search/path_result.hpp"
-#include "taut/search/rung.hpp"
 
 namespace taut::detail {
 

@@ -4,7 +4,7 @@
 
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/context.hpp"
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {

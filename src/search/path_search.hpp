@@ -6,14 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "fan/geodesic_fan.hpp"
 #include "search/corrector.hpp"
 #include "search/facet_workers.hpp"
 #include "search/inquiry.hpp"
 #include "search/start_finder.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
-#include "taut/fan/geodesic_fan.hpp"
 #include "taut/search/path_options.hpp"
 #include "taut/search/path_result.hpp"
 #include "taut/surface/surface.hpp"

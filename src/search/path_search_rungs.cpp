@@ -11,12 +11,12 @@
 #include "core/stopwatch.hpp"
 #include "curve/polyline.hpp"
 #include "fan/fan_answers.hpp"
+#include "fan/geodesic_fan.hpp"
 #include "search/ladder_rules.hpp"
 #include "search/path_search.hpp"
-#include "taut/cells/find_box.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
-#include "taut/fan/geodesic_fan.hpp"
 
 namespace taut::detail {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "taut/core/box.hpp"
+#include "taut/core/types.hpp"
 
 namespace taut::detail {
 

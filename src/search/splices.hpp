@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "taut/march/start_paths.hpp"
+#include "march/start_paths.hpp"
 #include "taut/search/path_result.hpp"
 
 namespace taut::detail {

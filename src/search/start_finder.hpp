@@ -6,14 +6,14 @@
 #include <utility>
 #include <vector>
 
+#include "march/barrier.hpp"
+#include "march/distance_table.hpp"
 #include "march/march_over.hpp"
+#include "march/start_paths.hpp"
 #include "search/cell_levels.hpp"
 #include "search/ground.hpp"
 #include "search/start_rules.hpp"
-#include "taut/march/barrier.hpp"
-#include "taut/march/distance_field.hpp"
-#include "taut/march/distance_table.hpp"
-#include "taut/march/start_paths.hpp"
+#include "taut/march/march.hpp"
 #include "taut/search/path_options.hpp"
 #include "taut/search/path_result.hpp"
 

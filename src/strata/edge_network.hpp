@@ -4,8 +4,8 @@
 
 #include "strata/facet_graph.hpp"
 #include "strata/faceted_surface.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
+#include "taut/core/types.hpp"
 
 namespace taut::detail {
 

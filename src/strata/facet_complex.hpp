@@ -5,8 +5,8 @@
 
 #include "strata/edge_network.hpp"
 #include "strata/faceted_surface.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
+#include "taut/core/types.hpp"
 #include "taut/surface/surface.hpp"
 
 namespace taut::detail {

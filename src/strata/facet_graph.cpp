@@ -13,7 +13,7 @@
 #include <set>
 #include <utility>
 
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "strata/faceted_surface.hpp"
-#include "taut/core/box.hpp"
 #include "taut/core/context.hpp"
+#include "taut/core/types.hpp"
 
 namespace taut::detail {
 

@@ -1,4 +1,4 @@
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -11,7 +11,6 @@
 #include "surface/formula/parser.hpp"
 #include "surface/formula/scene_lines.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/scene_text.hpp"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/surface/normals.hpp"
+#include "taut/surface/point_cloud.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 #include "taut/surface/surface.hpp"
 

@@ -8,7 +8,7 @@
 #include "surface/describe.hpp"
 #include "surface/normal_space.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 // Notation. x: the point so far; s = -J^+ F(x): its Newton step; t: the fraction of s on trial; x_t = x + t s.
 //   r = |s|            residual, a length

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "taut/core/error.hpp"
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 namespace taut {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 #include "view/image.hpp"
 #include "view/raster.hpp"
 

@@ -1,4 +1,4 @@
-#include "taut/view/write_html.hpp"
+#include "taut/view/write_scene.hpp"
 
 #include <array>
 #include <bit>

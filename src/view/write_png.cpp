@@ -1,7 +1,7 @@
 #include <string>
 
 #include "taut/io/output_file.hpp"
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 #include "view/canvas.hpp"
 #include "view/encode_png.hpp"
 #include "view/picture.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "taut/io/output_file.hpp"
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 #include "view/encode.hpp"
 #include "view/encode_png.hpp"
 #include "view/lettering.hpp"

@@ -1,4 +1,4 @@
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,6 @@
 
 #include "support/interval_surfaces.hpp"
 #include "support/surfaces.hpp"
-#include "taut/cells/components.hpp"
-#include "taut/cells/subdivide.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 

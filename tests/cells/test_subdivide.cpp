@@ -1,4 +1,4 @@
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include <gtest/gtest.h>
 

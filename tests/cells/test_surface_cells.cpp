@@ -7,7 +7,7 @@
 
 #include "support/interval_surfaces.hpp"
 #include "support/surfaces.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {

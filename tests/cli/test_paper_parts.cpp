@@ -19,8 +19,8 @@
 #include "random_points.hpp"
 #include "rolled_sheet.hpp"
 #include "table.hpp"
-#include "taut/cells/subdivide.hpp"
-#include "taut/query/farthest_points.hpp"
+#include "taut/cells/find_cells.hpp"
+#include "taut/query/point_sets.hpp"
 #include "taut/surface/formula.hpp"
 #include "winding_pattern.hpp"
 

@@ -1,4 +1,4 @@
-#include "taut/core/nearest_name.hpp"
+#include "taut/core/error.hpp"
 
 #include <gtest/gtest.h>
 

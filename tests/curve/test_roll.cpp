@@ -5,10 +5,9 @@
 #include "support/rolled_sheet.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/curve/flow.hpp"
-#include "taut/march/descend.hpp"
 #include "taut/march/march.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/projection.hpp"
-#include "taut/surface/rbf.hpp"
 
 // The paper's own way over the roll of its Figure 3, known only by samples: lazy cells, march, descent, curvature flow.
 // tests/search/test_rolled_sheet.cpp asks the same of the whole.

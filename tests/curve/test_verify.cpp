@@ -1,4 +1,4 @@
-#include "taut/curve/verify.hpp"
+#include "taut/curve/exponential_map.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "taut/fan/geodesic_fan.hpp"
+#include "fan/geodesic_fan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -21,6 +21,8 @@
 
 namespace taut {
 namespace {
+
+using namespace detail;
 
 using std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -1,11 +1,10 @@
-#include "taut/io/csv_rows.hpp"
+#include "taut/io/read_points.hpp"
 
 #include <gtest/gtest.h>
 
 #include <sstream>
 
 #include "io/read_text.hpp"
-#include "taut/io/read_points.hpp"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/io/read_height_field.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "taut/io/read_neural_network.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Small volumes written byte by byte, each format with what makes it its own.
 
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "taut/core/error.hpp"
-#include "taut/io/read_volume.hpp"
+#include "taut/io/read_surface.hpp"
 
 namespace taut {
 namespace {

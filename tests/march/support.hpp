@@ -12,7 +12,6 @@
 
 #include "support/surfaces.hpp"
 #include "taut/cells/surface_cells.hpp"
-#include "taut/march/descend.hpp"
 #include "taut/march/march.hpp"
 
 namespace taut::test {

@@ -6,7 +6,7 @@
 
 #include "march/support.hpp"
 #include "support/interval_surfaces.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 
 namespace taut {
 namespace {

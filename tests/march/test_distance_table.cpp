@@ -1,16 +1,18 @@
-#include "taut/march/distance_table.hpp"
+#include "march/distance_table.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 #include "support.hpp"
-#include "taut/cells/subdivide.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {
 namespace {
+
+using namespace detail;
 
 using std::numbers::pi;
 

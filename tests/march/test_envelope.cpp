@@ -1,5 +1,5 @@
 // The paper's error bound (sec. 3.2): distances in the envelope are off by at most lambda sqrt(h).
-#include "taut/cells/envelope.hpp"
+#include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
 #include <functional>
@@ -7,7 +7,6 @@
 
 #include "march/support.hpp"
 #include "support/interval_surfaces.hpp"
-#include "taut/cells/subdivide.hpp"
 
 namespace taut {
 namespace {

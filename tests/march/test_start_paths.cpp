@@ -1,4 +1,4 @@
-#include "taut/march/start_paths.hpp"
+#include "march/start_paths.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -10,6 +10,8 @@
 
 namespace taut {
 namespace {
+
+using namespace detail;
 
 using std::numbers::pi;
 

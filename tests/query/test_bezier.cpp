@@ -8,7 +8,7 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
-#include "taut/query/log_map.hpp"
+#include "taut/query/tangent_maps.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

@@ -5,13 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "taut/query/class_path.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/query/distance_matrix.hpp"
-#include "taut/query/farthest_points.hpp"
 #include "taut/query/field.hpp"
-#include "taut/query/karcher_mean.hpp"
-#include "taut/query/voronoi.hpp"
+#include "taut/query/path.hpp"
+#include "taut/query/point_sets.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

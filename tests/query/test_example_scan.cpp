@@ -9,8 +9,8 @@
 #include "taut/curve/newton.hpp"
 #include "taut/io/read_point_cloud.hpp"
 #include "taut/query/path.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/projection.hpp"
-#include "taut/surface/rbf.hpp"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/query/farthest_points.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "taut/query/isolines.hpp"
+#include "taut/query/distance.hpp"
 
 #include <gtest/gtest.h>
 

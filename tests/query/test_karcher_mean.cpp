@@ -1,4 +1,4 @@
-#include "taut/query/karcher_mean.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
-#include "taut/query/log_map.hpp"
+#include "taut/query/tangent_maps.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

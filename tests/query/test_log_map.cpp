@@ -1,4 +1,4 @@
-#include "taut/query/log_map.hpp"
+#include "taut/query/tangent_maps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
-#include "taut/curve/length_derivative.hpp"
+#include "taut/curve/geodesic.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/surface/formula.hpp"
 

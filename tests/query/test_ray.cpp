@@ -1,4 +1,4 @@
-#include "taut/query/ray.hpp"
+#include "taut/query/tangent_maps.hpp"
 
 #include <gtest/gtest.h>
 

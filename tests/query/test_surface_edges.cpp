@@ -1,4 +1,4 @@
-#include "taut/query/surface_edges.hpp"
+#include "taut/query/surface_summary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "taut/cells/find_box.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/query/surface_mesh.hpp"
-#include "taut/query/surface_summary.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

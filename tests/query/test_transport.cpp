@@ -1,4 +1,4 @@
-#include "taut/query/transport.hpp"
+#include "taut/query/tangent_maps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
-#include "taut/query/log_map.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

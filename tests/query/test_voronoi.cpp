@@ -1,4 +1,4 @@
-#include "taut/query/voronoi.hpp"
+#include "taut/query/point_sets.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 
 #include "support/clouds.hpp"
 #include "taut/query/path.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "support/rolled_sheet.hpp"
 #include "taut/query/path.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 // The roll (Figure 3 of the paper) through the whole of `shortest_path`: the path between two turns goes round and does
 // not jump from turn to turn, whatever corrects it and whatever cells it starts from. The truth is the unrolled

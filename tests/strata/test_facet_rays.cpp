@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "taut/query/path.hpp"
-#include "taut/query/ray.hpp"
+#include "taut/query/tangent_maps.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace taut {

@@ -1,4 +1,4 @@
-#include "taut/surface/diagnose.hpp"
+#include "taut/surface/conformance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,6 @@
 
 #include "support/surfaces.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/unknown_name.hpp"
 
 namespace taut {
 namespace {

@@ -1,4 +1,4 @@
-#include "taut/surface/local_fit.hpp"
+#include "taut/surface/fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "support/clouds.hpp"
-#include "taut/cells/components.hpp"
-#include "taut/cells/grow.hpp"
+#include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/conformance.hpp"
-#include "taut/surface/fit.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut {

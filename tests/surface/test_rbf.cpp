@@ -1,6 +1,6 @@
 // F itself: derivatives, bits, frames, the kernel at a centre, the domain. How well it fits is in test_rbf_fit.cpp.
 
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 #include <gtest/gtest.h>
 

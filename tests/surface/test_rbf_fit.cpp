@@ -11,7 +11,7 @@
 
 #include "support/clouds.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {

@@ -8,7 +8,7 @@
 #include "support/clouds.hpp"
 #include "surface/normals/sheet_split.hpp"
 #include "taut/surface/fit.hpp"
-#include "taut/surface/normals.hpp"
+#include "taut/surface/point_cloud.hpp"
 
 namespace taut {
 namespace {

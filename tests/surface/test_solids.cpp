@@ -9,7 +9,6 @@
 #include "taut/core/error.hpp"
 #include "taut/surface/conformance.hpp"
 #include "taut/surface/formula.hpp"
-#include "taut/surface/scene_text.hpp"
 
 namespace taut {
 namespace {

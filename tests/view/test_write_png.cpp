@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "taut/core/error.hpp"
-#include "taut/view/write_picture.hpp"
+#include "taut/view/write_scene.hpp"
 #include "view/scenes.hpp"
 
 namespace taut {

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut {

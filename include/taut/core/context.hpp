@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <string_view>
+#include <thread>
 
 #include "taut/core/error.hpp"
 
@@ -35,5 +36,10 @@ struct Context {
     if (cancel != nullptr && cancel->load(std::memory_order_relaxed)) throw Cancelled();
   }
 };
+
+/// Starts the threads that all long loops share, side by side with what the caller does next. Without it the first
+/// loop does, which takes one or two milliseconds: a program that answers in 20 may mind. Keep what it returns, the
+/// thread that does the starting, until the end of main.
+[[nodiscard]] std::jthread start_threads();
 
 }  // namespace taut

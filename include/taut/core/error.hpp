@@ -3,6 +3,9 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace taut {
 
@@ -62,6 +65,22 @@ class OutOfMemory : public Error {
 class Cancelled : public Error {
  public:
   Cancelled() : Error("cancelled") {}
+};
+
+/// Which of the known names is meant by `name`, which is none of them: the one with the fewest letters to insert, drop,
+/// change or swap with their neighbour (letter case counts half). Empty where the nearest is too far to be meant: more
+/// than one step for up to four letters, two for longer names. The first of several that are as near.
+[[nodiscard]] std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& known);
+
+/// A formula that uses a name without a meaning: no variable, no constant, no function, no parameter with a value.
+class UnknownName : public ParseError {
+ public:
+  UnknownName(const std::string& message, std::size_t column, std::string name)
+      : ParseError(message, column), name_(std::move(name)) {}
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  std::string name_;
 };
 
 }  // namespace taut

@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "taut/core/types.hpp"
 
 namespace taut {
 
@@ -43,5 +46,8 @@ void write_text(const std::filesystem::path& path, std::string_view text);
 
 /// Shortest decimal that reads back as the same double; "nan", "inf", "-inf".
 [[nodiscard]] std::string shortest(double value);
+
+/// The beginning of a `.npy` file (NumPy's format 1.0) of 64-bit floats in C order; the numbers, little-endian, follow.
+void write_npy_header(OutputFile& out, const std::vector<Index>& shape);
 
 }  // namespace taut

@@ -51,4 +51,36 @@ class PathSolver {
 [[nodiscard]] PathResult shortest_path(const Surface& surface, const VectorIn& p, const VectorIn& q,
                                        const PathOptions& options = {}, const Context& context = {});
 
+/// A path through several points in order. The PathResult part is the whole: lengths, errors and seconds are sums,
+/// residuals and cells the largest, `unique` and `locally_shortest` hold when they hold for every leg, `tied` and
+/// `doubts` when they do for one, `points` run
+/// through all legs without repeating the joints. It has the status and message of its worst leg, and no length and
+/// points when a leg has none. `grid_path`, `candidates` and the directions at the ends are left to the legs.
+struct ViaResult : PathResult {
+  std::vector<PathResult> legs;  ///< n - 1, each a shortest path
+};
+
+/// The shortest path through column 0, 1, ..., n - 1 of `points` (d x n, n >= 2), each projected onto the surface as by
+/// PathSolver::solve. Where every leg is globally shortest, so is the whole among the paths through these points.
+/// Throws InvalidArgument for a wrong shape, and what PathSolver::solve throws, its message led by the leg's number.
+[[nodiscard]] ViaResult path_through(PathSolver& solver, const PointsIn& points);
+
+/// The geodesic in the homotopy class of `polyline` (d x m, m >= 2, a point a column, in order): what a string laid
+/// along it becomes when it is pulled taut over the surface with its ends held. Not the shortest path: a polyline that
+/// winds twice round a handle stays wound twice. See docs/loops.md.
+///
+/// The points are projected onto the surface first. The class is kept by moving in steps shorter than a grid cell
+/// (`PathOptions::cell`, half of it), and the corrected curve must follow the shortened polyline as closely; when it
+/// does not, the status is not_converged. `PathOptions::method` newton or flow; `march`, `grid` and `all` play no part.
+///
+/// In the result `grid_path` is the polyline as it was before the correction, `candidates` has the path alone, and
+/// neither `unique` nor `tied` holds: other ways are not looked for. A polyline that returns to its start and comes
+/// undone is a path of length 0; `message` says so.
+///
+/// Throws InvalidArgument for a wrong shape, an option out of range, and, naming the points by their number from 1, for
+/// a point without a surface within ten cells, or neighbours too far apart to tell their class; also EmptySurface,
+/// OutOfMemory, Cancelled.
+[[nodiscard]] PathResult path_in_class(const Surface& surface, const PointsIn& polyline,
+                                       const PathOptions& options = {}, const Context& context = {});
+
 }  // namespace taut

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <string_view>
+
+#include "taut/core/types.hpp"
 
 namespace taut {
 
@@ -69,6 +72,98 @@ class Doubts {
  private:
   static constexpr std::uint32_t bit(Doubt doubt) { return std::uint32_t{1} << static_cast<std::uint32_t>(doubt); }
   std::uint32_t bits_ = 0;
+};
+
+/// What stands between the two points where no path was found, or the one found is no geodesic.
+struct Obstacle {
+  enum class Kind : std::uint8_t {
+    none,
+    apart,             ///< the points lie on different components: bounds of the cells prove it for the box that was
+                       ///< looked through (on a fitted surface they are a careful estimate)
+    apart_by_fan,      ///< they do: all geodesics from the start, followed to their end, meet the end nowhere
+    apart_by_walks,    ///< they seem to: without cells, random searches from both ends do not meet
+    no_way,            ///< no way was found, for none of the reasons below; that there is none is not proved
+    sheets_not_told,   ///< cells cannot tell the sheets of the surface apart, or the points lie on different components
+    coarse_cells,      ///< the cells are coarser than the surface bends
+    narrow_gap,        ///< near `place` parts of the surface come within `size` (model units) of each other
+    singular_between,  ///< near `place` the gradient falls to nothing
+    singular_end,      ///< one of the points, `place`, is a singular one: the equations depend on each other there
+    corner,            ///< the normal jumps at one of the points, `place`
+    crease,            ///< near `place` the normal turns by `size` (radians) within a cell
+    cells_spent,       ///< as many cells as may grow did not lead from one end to the other
+    no_geodesic,       ///< ways were found, but no geodesic: Geodesic::reason says why; `place`, if any, says where
+    jumped,            ///< the correction has left the way it started from, which is `size` (model units) long
+    loose_ends,        ///< the curve found does not join the points: an error in this library
+    faces,             ///< ways over edges were found, but none was made a geodesic
+    contracts,         ///< a loop contracts to where the surface is singular, or thinner than cells can tell
+    refused,           ///< the points cannot be asked for, in a batch: where one alone would throw
+  };
+  Kind kind = Kind::none;
+  Vector place = {};  ///< d, or empty
+  double size = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// The name used in JSON and messages: "singular_between", ...
+[[nodiscard]] constexpr std::string_view to_string(Obstacle::Kind kind) {
+  switch (kind) {
+    case Obstacle::Kind::none: return "none";
+    case Obstacle::Kind::apart: return "apart";
+    case Obstacle::Kind::apart_by_fan: return "apart_by_fan";
+    case Obstacle::Kind::apart_by_walks: return "apart_by_walks";
+    case Obstacle::Kind::no_way: return "no_way";
+    case Obstacle::Kind::sheets_not_told: return "sheets_not_told";
+    case Obstacle::Kind::coarse_cells: return "coarse_cells";
+    case Obstacle::Kind::narrow_gap: return "narrow_gap";
+    case Obstacle::Kind::singular_between: return "singular_between";
+    case Obstacle::Kind::singular_end: return "singular_end";
+    case Obstacle::Kind::corner: return "corner";
+    case Obstacle::Kind::crease: return "crease";
+    case Obstacle::Kind::cells_spent: return "cells_spent";
+    case Obstacle::Kind::no_geodesic: return "no_geodesic";
+    case Obstacle::Kind::jumped: return "jumped";
+    case Obstacle::Kind::loose_ends: return "loose_ends";
+    case Obstacle::Kind::faces: return "faces";
+    case Obstacle::Kind::contracts: return "contracts";
+    case Obstacle::Kind::refused: return "refused";
+  }
+  return "unknown";
+}
+
+/// One way to look for the shortest path. The search goes from cheap ones to dear ones until no doubt is left.
+enum class Rung : std::uint8_t {
+  faces,   ///< over a graph of all faces, edges and borders of a surface that is not smooth
+  table,   ///< starts from a table of distances between landmarks
+  fields,  ///< distances marched from both ends over cells of one size
+  walks,   ///< without cells, step by step from both ends
+  closer,  ///< finer cells in the part of the box that shorter paths can visit
+  wider,   ///< a wider window on a surface without end
+  fan,     ///< all geodesics from the start, as far as the path is long
+  border,  ///< along the border of a domain
+};
+
+/// The name used in JSON: "fields", ...
+[[nodiscard]] constexpr std::string_view to_string(Rung rung) {
+  switch (rung) {
+    case Rung::faces: return "faces";
+    case Rung::table: return "table";
+    case Rung::fields: return "fields";
+    case Rung::walks: return "walks";
+    case Rung::closer: return "closer";
+    case Rung::wider: return "wider";
+    case Rung::fan: return "fan";
+    case Rung::border: return "border";
+  }
+  return "unknown";
+}
+
+/// What one rung came to.
+struct RungReport {
+  Rung rung = Rung::fields;
+  double cell = 0;      ///< h of the cells it looked at, model units; 0 = none
+  Index num_cells = 0;  ///< of those
+  /// Of the best path known after it, model units; NaN = none.
+  double length = std::numeric_limits<double>::quiet_NaN();
+  Doubts doubts = {};  ///< that it left
 };
 
 }  // namespace taut

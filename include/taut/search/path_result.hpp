@@ -6,14 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
-#include "taut/curve/flow_summary.hpp"
+#include "taut/curve/flow.hpp"
 #include "taut/curve/geodesic.hpp"
 #include "taut/search/doubt.hpp"
-#include "taut/search/obstacle.hpp"
 #include "taut/search/path_options.hpp"
-#include "taut/search/rung.hpp"
 
 namespace taut {
 

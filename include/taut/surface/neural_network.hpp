@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 #include "taut/surface/surface.hpp"
 

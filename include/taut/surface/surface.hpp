@@ -4,7 +4,6 @@
 #include <optional>
 #include <string_view>
 
-#include "taut/core/box.hpp"
 #include "taut/core/types.hpp"
 #include "taut/surface/implicit_function.hpp"
 #include "taut/surface/point_cloud.hpp"

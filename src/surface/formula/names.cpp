@@ -10,7 +10,6 @@
 #include "surface/formula/limits.hpp"
 #include "surface/formula/solids.hpp"
 #include "taut/core/error.hpp"
-#include "taut/core/nearest_name.hpp"
 
 namespace taut::detail {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "surface/formula/expression.hpp"
 #include "surface/formula/lexer.hpp"
+#include "taut/core/error.hpp"
 #include "taut/core/types.hpp"
-#include "taut/surface/unknown_name.hpp"
 
 namespace taut::detail {
 

@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "taut/surface/fit.hpp"
 #include "taut/surface/implicit_function.hpp"
-#include "taut/surface/local_fit.hpp"
 
 namespace taut::detail {
 

@@ -17,8 +17,8 @@
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/kd_tree.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/local_fit.hpp"
-#include "taut/surface/normals.hpp"
+#include "taut/surface/fit.hpp"
+#include "taut/surface/point_cloud.hpp"
 
 // Four steps, each linear in the number of samples but for the searching of neighbours:
 //   1. unit normals; the spacing around each sample;

@@ -6,7 +6,7 @@
 #include "surface/local_fit/cubic.hpp"
 #include "surface/rbf/support_domain.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/local_fit.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {

@@ -3,7 +3,7 @@
 #include "surface/rbf/kd_tree.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
-#include "taut/surface/merged_sheets.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut::detail {
 

@@ -4,8 +4,8 @@
 
 #include "surface/rbf/kd_tree.hpp"
 #include "taut/core/context.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/implicit_function.hpp"
-#include "taut/surface/merged_sheets.hpp"
 
 namespace taut::detail {
 

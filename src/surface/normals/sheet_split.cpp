@@ -77,7 +77,10 @@ class Splitter {
  private:
   static constexpr int kTangents = D - 1;
   static constexpr int kTerms = 1 + kTangents + kTangents * (kTangents + 1) / 2;
-  using Row = Eigen::Matrix<double, 1, kNearest>;
+  /// A column a sample. Their number is no constant to the compiler: it would unroll all products, for minutes.
+  template <int R>
+  using PerSample = Eigen::Matrix<double, R, Eigen::Dynamic, R == 1 ? Eigen::RowMajor : Eigen::ColMajor, R, kNearest>;
+  using Row = PerSample<1>;
 
   /// Over the plane of least spread of the nearest `count`.
   Split over_plane_of(int count) {
@@ -86,7 +89,7 @@ class Splitter {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> spread(centred * centred.transpose());
     axes_ = spread.eigenvectors();
     height_ = axes_.col(0).transpose() * u_;
-    const Eigen::Matrix<double, kTangents, kNearest> place = axes_.template rightCols<kTangents>().transpose() * u_;
+    const PerSample<kTangents> place = axes_.template rightCols<kTangents>().transpose() * u_;
     terms_.row(0).setOnes();
     int row = 1;
     for (int a = 0; a < kTangents; ++a) terms_.row(row++) = place.row(a);
@@ -109,7 +112,7 @@ class Splitter {
     std::sort(gaps.begin(), gaps.end());
     Split best;
     for (int g = 0; g < kTried; ++g) {
-      Row upper = Row::Zero();
+      Row upper = Row::Zero(kNearest);
       for (int j = gaps[static_cast<std::size_t>(g)].second; j < kNearest; ++j) {
         upper(order[static_cast<std::size_t>(j)]) = 1;
       }
@@ -122,7 +125,7 @@ class Splitter {
   /// `upper`: 1 for the samples on the upper sheet, at first.
   Split in_turns(Row upper) {
     constexpr double kRidge = 1e-10;  // where samples in rows leave a term open
-    Eigen::Matrix<double, kTerms + 1, kNearest> all;
+    PerSample<kTerms + 1> all(kTerms + 1, kNearest);
     all.template topRows<kTerms>() = terms_;
     Split split;
     for (int pass = 0; pass < kMostPasses; ++pass) {
@@ -155,10 +158,10 @@ class Splitter {
   [[nodiscard]] bool told_by_place(const Row& upper) const {
     constexpr double kRidge = 1e-10;
     constexpr int kPowers = D == 2 ? 5 : 15;
-    const Eigen::Matrix<double, kTangents, kNearest> place = terms_.template middleRows<kTangents>(1);
-    Eigen::Matrix<double, kPowers, kNearest> powers;
+    const PerSample<kTangents> place = terms_.template middleRows<kTangents>(1);
+    PerSample<kPowers> powers(kPowers, kNearest);
     int row = 0;
-    Row first = Row::Ones();
+    Row first = Row::Ones(kNearest);
     for (int a = 0; a <= 4; ++a, first = first.cwiseProduct(place.row(0)).eval()) {
       Row product = first;
       for (int b = 0; b <= (D == 2 ? 0 : 4 - a); ++b, product = product.cwiseProduct(place.row(kTangents - 1)).eval()) {
@@ -177,10 +180,10 @@ class Splitter {
   const KdTree& tree_;
   std::vector<Neighbour> found_;
   int n_ = 0;
-  Eigen::Matrix<double, D, kNearest> u_;  // the nearest, seen from the sample, the farthest at 1
-  Eigen::Matrix<double, D, D> axes_;      // the first across the sheet
-  Row height_;
-  Eigen::Matrix<double, kTerms, kNearest> terms_;
+  PerSample<D> u_{D, kNearest};       // the nearest, seen from the sample, the farthest at 1
+  Eigen::Matrix<double, D, D> axes_;  // the first across the sheet
+  Row height_{1, kNearest};
+  PerSample<kTerms> terms_{kTerms, kNearest};
 };
 
 template <int D>

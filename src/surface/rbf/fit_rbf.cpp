@@ -15,7 +15,7 @@
 #include "surface/rbf/rbf_solve.hpp"
 #include "surface/rbf/support_radius.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {

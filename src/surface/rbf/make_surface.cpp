@@ -7,7 +7,7 @@
 #include "surface/rbf/rbf_function.hpp"
 #include "surface/rbf/support_domain.hpp"
 #include "taut/core/error.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut {
 namespace {

@@ -5,8 +5,8 @@
 #include "surface/fitted_function.hpp"
 #include "surface/rbf/kernel_sum.hpp"
 #include "surface/rbf/polynomial.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/implicit_function.hpp"
-#include "taut/surface/rbf.hpp"
 
 namespace taut::detail {
 

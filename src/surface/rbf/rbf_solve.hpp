@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "taut/core/context.hpp"
-#include "taut/surface/rbf.hpp"
+#include "taut/surface/fit.hpp"
 
 namespace taut::detail {
 

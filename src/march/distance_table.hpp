@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
+#include "march/start_paths.hpp"
 #include "taut/cells/surface_cells.hpp"
 #include "taut/core/context.hpp"
-#include "taut/march/start_paths.hpp"
 #include "taut/surface/surface.hpp"
 
-namespace taut {
+namespace taut::detail {
 
 /// Marched distances from landmarks, cells spread evenly over the surface, to all cells: made once, it gives the starts
 /// between any two points in microseconds, where two fields take milliseconds. Safe to share between threads.
@@ -71,4 +71,4 @@ class DistanceTable {
   std::vector<std::uint32_t> links_;       // cells on the same sheet around each
 };
 
-}  // namespace taut
+}  // namespace taut::detail

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
-namespace taut {
+namespace taut::detail {
 
 /// Where a march stopped although there are cells beyond.
 struct Barrier {
@@ -19,4 +19,4 @@ struct Barrier {
 [[nodiscard]] std::optional<Barrier> find_barrier(const SurfaceCells& cells, const DistanceField& field,
                                                   const VectorIn& x);
 
-}  // namespace taut
+}  // namespace taut::detail

@@ -9,7 +9,7 @@
 #include "taut/curve/spectral_curve.hpp"
 #include "taut/surface/surface.hpp"
 
-namespace taut {
+namespace taut::detail {
 
 struct FanOptions {
   /// Relative tolerance of distances, 1e-13 .. 1e-3.
@@ -99,4 +99,4 @@ class GeodesicFan {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace taut
+}  // namespace taut::detail

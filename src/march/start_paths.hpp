@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "taut/core/context.hpp"
-#include "taut/march/distance_field.hpp"
+#include "taut/march/march.hpp"
 
-namespace taut {
+namespace taut::detail {
 
 /// A polyline between two points, to start a correction from.
 struct StartPath {
@@ -37,4 +37,4 @@ struct StartPathOptions {
                                                  const DistanceField& from_p, const DistanceField& from_q,
                                                  const StartPathOptions& options = {}, const Context& context = {});
 
-}  // namespace taut
+}  // namespace taut::detail

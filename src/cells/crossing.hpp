@@ -8,7 +8,7 @@
 #include "taut/core/types.hpp"
 #include "taut/surface/surface.hpp"
 
-namespace taut {
+namespace taut::detail {
 
 /// May the surface cross a closed cell? The one test that Algorithms I and II share.
 ///
@@ -73,4 +73,4 @@ class CrossingTest {
       hessian_;
 };
 
-}  // namespace taut
+}  // namespace taut::detail
