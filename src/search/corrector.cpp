@@ -157,11 +157,12 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
   Geodesic& geodesic = corrected.geodesic;
   const double start_length = polyline_length(start);
   switch (options_.method) {
-    case CorrectionMethod::newton:
+    case CorrectionMethod::newton: {
       const bool begun = choice.rough.num_elements() > 0;
       if (begun) geodesic = newton(worker).refine(choice.rough, context_);
       if (!begun || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
       break;
+    }
     case CorrectionMethod::flow: {
       FlowResult flowed = correct_flow(surface_, start, flow_options(options_, lattice), context_);
       corrected.flow = flowed.summary;
