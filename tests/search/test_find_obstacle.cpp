@@ -15,7 +15,7 @@ namespace {
 Obstacle obstacle(const std::string& formula, const Vector& from, const Vector& to, const Vector& stopped_at,
                   double turn = 0) {
   detail::Tried tried{.cell = 0.01};
-  tried.barrier = Barrier{};
+  tried.barrier = detail::Barrier{};
   tried.barrier->point = stopped_at;
   tried.barrier->turn = turn;
   return detail::find_obstacle(parse_surface(formula), from, to, tried);

@@ -29,7 +29,7 @@ PathCandidate way(double first, double second, double height = 0) {
   return result;
 }
 
-double side(const StartPath& path, double x) {
+double side(const detail::StartPath& path, double x) {
   Index nearest = 0;
   (path.points.row(0).array() - x).abs().minCoeff(&nearest);
   return path.points(1, nearest);
@@ -38,7 +38,7 @@ double side(const StartPath& path, double x) {
 TEST(Splices, TheMissingWayIsFound) {
   const Surface plane = parse_surface("z=0", {.dim = 3});
   const std::vector<PathCandidate> known = {way(1, 1), way(-1, -1), way(-1, 1)};
-  const std::vector<StartPath> found = detail::splices(plane, known, 1.02 * known[0].length);
+  const std::vector<detail::StartPath> found = detail::splices(plane, known, 1.02 * known[0].length);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_GT(side(found[0], 1), 0.8 * kWide);
   EXPECT_LT(side(found[0], 3), -0.8 * kWide);

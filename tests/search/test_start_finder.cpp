@@ -34,7 +34,7 @@ TEST(StartFinder, OnePlainWayIsOneStart) {
   const Vector q = Eigen::Vector3d(0, 0.6, 0.8);
   const Found found = find(test::unit_sphere(), p, q);
   ASSERT_EQ(found.starts.paths.size(), 1U);
-  const StartPath& start = found.starts.paths.front();
+  const detail::StartPath& start = found.starts.paths.front();
   EXPECT_NEAR(start.length, std::acos(0.8), 0.05);
   EXPECT_EQ(start.points.col(0), p);
   EXPECT_EQ(start.points.rightCols(1), q);
