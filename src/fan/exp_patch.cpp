@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fan/panel_point.hpp"
+
 namespace taut::detail {
 namespace {
 
@@ -27,39 +29,12 @@ constexpr double kEnough = 1e-13;
 /// A last step along the ray by this leaves its square, in units of the panel.
 constexpr double kClose = 1e-5;
 
-struct MapPoint {
-  Eigen::Vector3d x, across, along;  ///< and derivatives by alpha and beta
-};
-
-MapPoint at(const ExpPatch& patch, double alpha, double beta) {
-  double tb[kSeries];
-  double sb[kSeries];
-  double ta[kRays];
-  double sa[kRays];
-  chebyshev_slopes(beta, kSeries, tb, sb);
-  chebyshev_slopes(alpha, kRays, ta, sa);
-  RayVectors value = patch.series.col(0);
-  RayVectors slope = RayVectors::Zero();
-  for (int n = 1; n < kSeries; ++n) {
-    value += tb[n] * patch.series.col(n);
-    slope += sb[n] * patch.series.col(n);
-  }
-  MapPoint p{value.head<3>(), Eigen::Vector3d::Zero(), slope.head<3>()};
-  for (int m = 1; m < kRays; ++m) {
-    const auto c = value.segment<3>(3 * m);
-    p.x += ta[m] * c;
-    p.across += sa[m] * c;
-    p.along += ta[m] * slope.segment<3>(3 * m);
-  }
-  return p;
-}
-
 }  // namespace
 
 bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, PatchHit& hit) {
   const double half_step = patch.step / 2;
   for (int i = 0; i < kMostSteps; ++i) {
-    const MapPoint p = at(patch, alpha, beta);
+    const PanelPoint p = panel_point(patch, alpha, beta);
     const Eigen::Vector3d r = q - p.x;
     const double ee = p.across.squaredNorm();
     const double tt = p.along.squaredNorm();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -42,61 +43,71 @@ Index most_evaluated(const Surface& surface) {
   return surface.kind() == "patches" || surface.kind() == "volume" ? kLocal : kFormula;
 }
 
-std::vector<FanAnswer> ask_fan(GeodesicFan& fan, const Surface& surface, const PointsIn& sources,
-                               const VectorIn& values, const PointsIn& targets, double max_distance,
-                               const Context& context) {
+void ask_fan(GeodesicFan& fan, const Surface& surface, const PointsIn& sources, const VectorIn& values,
+             const PointsIn& targets, std::vector<Index> asked, double max_distance, const Context& context,
+             const TakeAnswer& take) {
   constexpr double kBeyondStraight = 1.1;
   constexpr double kGrowth = 1.4;
   const auto size = [](Index i) { return static_cast<std::size_t>(i); };
-  std::vector<FanAnswer> answers(size(targets.cols()));
-  std::vector<Index> open;
   double straight = 0;
-  for (Index j = 0; j < targets.cols(); ++j) {
-    open.push_back(j);
+  for (const Index j : asked) {
     double nearest = std::numeric_limits<double>::infinity();
     for (Index s = 0; s < sources.cols(); ++s) {
       nearest = std::min(nearest, values(s) + (targets.col(j) - sources.col(s)).norm());
     }
     straight = std::max(straight, nearest);
   }
+  Context own = context;
+  own.threads = 1;
   double goal = kBeyondStraight * straight;
-  while (!open.empty()) {
+  while (!asked.empty()) {
     fan.extend(std::min(goal, max_distance), context);
     goal = std::max(kGrowth * goal, straight);
-    Points asked(3, static_cast<Index>(open.size()));
-    for (Index i = 0; i < asked.cols(); ++i) asked.col(i) = targets.col(open[size(i)]);
-    const std::vector<FanHit> hits = fan.locate(asked, context);
     const double reach = fan.reach();
-    std::vector<std::uint8_t> done(hits.size(), 0);
-    constexpr Index kGrain = 64;
-    detail::parallel_for(context, 0, static_cast<Index>(hits.size()), kGrain, [&](Index begin, Index end) {
+    std::vector<std::uint8_t> done(asked.size(), 0);
+    // Hits are large: those of a block stay in the cache until they have been taken.
+    constexpr Index kGrain = 128;
+    detail::parallel_for(context, 0, static_cast<Index>(asked.size()), kGrain, [&](Index begin, Index end) {
       std::optional<ExponentialMap> rays;
+      Points x(3, end - begin);
+      for (Index i = begin; i < end; ++i) x.col(i - begin) = targets.col(asked[size(i)]);
+      const std::vector<FanHit> hits = fan.locate(x, own);
       for (Index i = begin; i < end; ++i) {
-        FanAnswer& answer = answers[size(open[size(i)])];
-        answer.hit = hits[size(i)];
+        FanAnswer answer{.kind = FanAnswer::Kind::open, .hit = hits[size(i - begin)]};
         const double least = std::min(answer.hit.distance, answer.hit.astray);
-        const double known = std::min(reach, fan.broken() ? fan.bound(asked.col(i)) : reach);
-        // Without a limit, what no geodesic of a complete fan meets stays open: it may lie on another component.
+        const double known = fan.broken() ? std::min(reach, fan.bound(x.col(i - begin))) : reach;
         if (std::isfinite(max_distance) && std::min(least, known) >= max_distance) {
+          // Without a limit, what no geodesic of a complete fan meets stays open: it may lie on another component.
           answer.kind = FanAnswer::Kind::beyond;
           done[size(i)] = 1;
-          continue;
+        } else if (std::isfinite(least) && least <= known) {
+          done[size(i)] = 1;
+          if (answer.hit.astray < answer.hit.distance && !rays) {
+            rays.emplace(surface, ExponentialOptions{.tolerance = 1e-12, .conjugate = false, .points = false});
+          }
+          const bool inside = answer.hit.distance <= answer.hit.astray || stays_inside(*rays, answer.hit, context);
+          if (inside) answer.kind = FanAnswer::Kind::proved;
         }
-        if (!std::isfinite(least) || least > known) continue;
-        done[size(i)] = 1;
-        answer.kind = FanAnswer::Kind::proved;
-        if (answer.hit.distance <= answer.hit.astray) continue;
-        if (!rays) rays.emplace(surface, ExponentialOptions{.tolerance = 1e-12, .conjugate = false, .points = false});
-        if (!stays_inside(*rays, answer.hit, context)) answer.kind = FanAnswer::Kind::open;
+        take(asked[size(i)], answer);
       }
     });
     std::vector<Index> left;
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-      if (done[i] == 0) left.push_back(open[i]);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (done[i] == 0) left.push_back(asked[i]);
     }
-    open = std::move(left);
+    asked = std::move(left);
     if (fan.finished()) break;
   }
+}
+
+std::vector<FanAnswer> ask_fan(GeodesicFan& fan, const Surface& surface, const PointsIn& sources,
+                               const VectorIn& values, const PointsIn& targets, double max_distance,
+                               const Context& context) {
+  std::vector<FanAnswer> answers(static_cast<std::size_t>(targets.cols()));
+  std::vector<Index> all(answers.size());
+  std::iota(all.begin(), all.end(), Index{0});
+  ask_fan(fan, surface, sources, values, targets, std::move(all), max_distance, context,
+          [&](Index target, const FanAnswer& answer) { answers[static_cast<std::size_t>(target)] = answer; });
   return answers;
 }
 

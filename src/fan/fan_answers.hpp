@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "fan/geodesic_fan.hpp"
@@ -28,8 +29,17 @@ struct FanAnswer {
   FanHit hit;
 };
 
-/// Grows `fan` on `surface` from `sources` (3 x m, with `values`) until every target (3 x n, on the surface) is proved
-/// or beyond, or as far as it can be grown. Throws Cancelled.
+/// Receives what is known of a target (its column) so far. Called for targets in blocks, from several threads, for one
+/// target never at once; the last call for it counts.
+using TakeAnswer = std::function<void(Index target, const FanAnswer& answer)>;
+
+/// Grows `fan` on `surface` from `sources` (3 x m, with `values`) until each of the columns `asked` of `targets` (3 x
+/// n, on the surface) is proved or beyond, or as far as it can be grown. Throws Cancelled.
+void ask_fan(GeodesicFan& fan, const Surface& surface, const PointsIn& sources, const VectorIn& values,
+             const PointsIn& targets, std::vector<Index> asked, double max_distance, const Context& context,
+             const TakeAnswer& take);
+
+/// The same of all targets.
 [[nodiscard]] std::vector<FanAnswer> ask_fan(GeodesicFan& fan, const Surface& surface, const PointsIn& sources,
                                              const VectorIn& values, const PointsIn& targets, double max_distance,
                                              const Context& context);

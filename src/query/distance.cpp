@@ -101,24 +101,22 @@ struct DistanceSolver::Impl {
 
   /// Distances on the fan for the columns `open`; those that are proved leave the list.
   void ask_fan(const Points& x, std::vector<Index>& open, Distances& result) {
-    Points targets(3, static_cast<Index>(open.size()));
-    for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);
-    const std::vector<detail::FanAnswer> answers =
-        detail::ask_fan(*fan, surface, sources, values, targets, options.max_distance, context);
-    std::vector<Index> left;
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      const Index j = open[i];
+    std::vector<std::uint8_t> is_open(static_cast<std::size_t>(x.cols()), 0);
+    const auto take_answer = [&](Index j, const detail::FanAnswer& answer) {
       const std::size_t slot = static_cast<std::size_t>(j);
-      const bool beyond = answers[i].kind == detail::FanAnswer::Kind::beyond;
-      if (std::isfinite(answers[i].hit.distance) && !beyond) take(j, answers[i].hit, result);
-      if (answers[i].kind == detail::FanAnswer::Kind::open) {
-        left.push_back(j);
-        continue;
+      const bool beyond = answer.kind == detail::FanAnswer::Kind::beyond;
+      is_open[slot] = answer.kind == detail::FanAnswer::Kind::open ? 1 : 0;
+      if (beyond) {
+        forget(j, result);
+      } else if (std::isfinite(answer.hit.distance)) {
+        take(j, answer.hit, result);
       }
+      if (is_open[slot] != 0) return;
       result.status[slot] = Status::ok;
       result.proof[slot] = beyond ? DistanceProof::none : DistanceProof::fan;
-    }
-    open = std::move(left);
+    };
+    detail::ask_fan(*fan, surface, sources, values, x, open, options.max_distance, context, take_answer);
+    std::erase_if(open, [&](Index j) { return is_open[static_cast<std::size_t>(j)] == 0; });
   }
 
   static void take(Index j, const FanHit& hit, Distances& result) {

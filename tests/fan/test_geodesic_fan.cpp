@@ -13,7 +13,9 @@
 #include <sstream>
 #include <string>
 
+#include "fan/panel_point.hpp"
 #include "support/surfaces.hpp"
+#include "surface/simd_dispatch.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
 #include "taut/surface/formula.hpp"
@@ -277,6 +279,50 @@ TEST(GeodesicFan, RefusesWhatItCannotDo) {
   EXPECT_THROW(fan_from(test::unit_sphere(), p, {.tolerance = 0, .max_panel = 1}), InvalidArgument);
   EXPECT_THROW(GeodesicFan(test::unit_sphere(), p, Vector::Zero(2), {.max_panel = 1}), InvalidArgument);
   EXPECT_THROW(fan_from(parse_surface("x^2+y^2=z^2"), Vector::Zero(3), {.max_panel = 1}), SingularPoint);
+}
+
+/// A panel's sums are those of the series' definition, and the same on every instruction set.
+TEST(PanelPoint, SumsTheSeriesInAnyLanes) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  detail::ExpPatch patch{};
+  for (Index n = 0; n < patch.series.cols(); ++n) {
+    for (Index r = 0; r < patch.series.rows(); ++r) {
+      patch.series(r, n) = normal(random) * std::pow(0.3, static_cast<double>(n + r / 3));
+    }
+  }
+  const auto best = detail::instruction_set();
+  for (const auto& [alpha, beta] : {std::pair{0.3, -0.7}, std::pair{-1.0, 1.0}, std::pair{0.999, 0.01}}) {
+    detail::use_instruction_set(detail::InstructionSet::baseline);
+    const detail::PanelPoint p = detail::panel_point(patch, alpha, beta);
+    const double a = std::acos(alpha);
+    const double b = std::acos(beta);
+    Eigen::Vector3d x = Eigen::Vector3d::Zero();
+    for (Index n = 0; n < patch.series.cols(); ++n) {
+      for (Index m = 0; 3 * m < patch.series.rows(); ++m) {
+        const double weight = std::cos(static_cast<double>(n) * b) * std::cos(static_cast<double>(m) * a);
+        x += weight * patch.series.col(n).segment<3>(3 * m);
+      }
+    }
+    EXPECT_LT((p.x - x).norm(), 1e-13);
+    constexpr double kStep = 1e-5;
+    const Eigen::Vector3d across =
+        (detail::panel_point(patch, alpha + kStep, beta).x - detail::panel_point(patch, alpha - kStep, beta).x);
+    const Eigen::Vector3d along =
+        (detail::panel_point(patch, alpha, beta + kStep).x - detail::panel_point(patch, alpha, beta - kStep).x);
+    EXPECT_LT((p.across - across / (2 * kStep)).norm(), 1e-7);
+    EXPECT_LT((p.along - along / (2 * kStep)).norm(), 1e-7);
+    for (const auto set :
+         {detail::InstructionSet::sse4, detail::InstructionSet::avx2, detail::InstructionSet::avx512}) {
+      if (!detail::has_instruction_set(set)) continue;
+      detail::use_instruction_set(set);
+      const detail::PanelPoint same = detail::panel_point(patch, alpha, beta);
+      EXPECT_EQ(same.x, p.x);
+      EXPECT_EQ(same.across, p.across);
+      EXPECT_EQ(same.along, p.along);
+    }
+  }
+  detail::use_instruction_set(best);
 }
 
 }  // namespace
