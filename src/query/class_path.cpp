@@ -10,10 +10,10 @@
 #include "homotopy/class_setting.hpp"
 #include "homotopy/geodesic_polygon.hpp"
 #include "homotopy/shortening.hpp"
+#include "query/taut_over_faces.hpp"
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
 #include "search/flow_options.hpp"
-#include "strata/faceted_surface.hpp"
 #include "taut/cells/cell_grid.hpp"
 #include "taut/curve/newton.hpp"
 
@@ -32,6 +32,23 @@ Geodesic uncorrected(const Shortening& shortening) {
   return geodesic;
 }
 
+/// On one face as on any smooth surface, as long as it stays there.
+PathResult over_faces(detail::OverFaces& over, const PointsIn& polyline, const PathOptions& options,
+                      const Context& context) {
+  const detail::Stopwatch watch;
+  if (over.only_face >= 0) {
+    PathResult result = path_in_class(over.surface->face(over.only_face).surface, polyline, options, context);
+    if (result.status == Status::ok && over.stays(result.points)) return result;
+  }
+  if (options.method != CorrectionMethod::newton) {
+    throw InvalidArgument("over edges a polyline is pulled taut by method newton only");
+  }
+  PathResult result;
+  detail::pull_taut(over, result, context);
+  result.seconds.correct = watch.seconds();
+  return result;
+}
+
 }  // namespace
 
 PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const PathOptions& options,
@@ -42,6 +59,9 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
     throw InvalidArgument("method grid: a polyline is shortened by newton or flow");
   }
   detail::Stopwatch watch;
+  if (std::optional<detail::OverFaces> over = detail::lay_over_faces(surface, polyline, false)) {
+    return over_faces(*over, polyline, options, context);
+  }
   const detail::StrandMaker maker(surface);
   const double cell = detail::first_cell_size(surface, {options.grid, options.cell, {}}, polyline, context);
   detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, false, cell);
@@ -111,9 +131,6 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   static_cast<Geodesic&>(result) = std::move(geodesic);
   result.message =
       is_point ? "the polyline comes undone: its ends are one point, and so is the path" : std::string(result.reason);
-  if (result.status != Status::ok && detail::is_kinked(surface)) {
-    result.message = "polylines are pulled taut on one smooth face only, and this surface has edges";
-  }
   result.doubts = {Doubt::rivals_not_sought};
   if (result.status == Status::ok) {
     result.candidates.push_back({result.length, result.length_error, result.locally_shortest, result.points});

@@ -11,10 +11,10 @@
 #include "homotopy/class_setting.hpp"
 #include "homotopy/geodesic_polygon.hpp"
 #include "homotopy/shortening.hpp"
+#include "query/taut_over_faces.hpp"
 #include "search/cell_levels.hpp"
 #include "search/check_options.hpp"
 #include "search/explain.hpp"
-#include "strata/faceted_surface.hpp"
 
 namespace taut {
 namespace {
@@ -51,6 +51,21 @@ ClosedGeodesic unfinished(const Shortening& shortening, Status status, std::stri
   return result;
 }
 
+/// On one face as on any smooth surface, as long as it stays there.
+ClosedGeodesic loop_over_faces(detail::OverFaces& over, const PointsIn& polyline, const PathOptions& options,
+                               const Context& context) {
+  const detail::Stopwatch watch;
+  ClosedGeodesic result;
+  if (over.only_face >= 0) {
+    result = closed_geodesic(over.surface->face(over.only_face).surface, polyline, options, context);
+    if (result.status == Status::ok && over.stays(result.points)) return result;
+    result = {};
+  }
+  detail::pull_loop_taut(over, result, result.neutral, context);
+  result.seconds.correct = watch.seconds();
+  return result;
+}
+
 }  // namespace
 
 ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline, const PathOptions& options,
@@ -61,6 +76,9 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   }
   detail::check_polyline(surface, polyline, true);
   detail::Stopwatch watch;
+  if (std::optional<detail::OverFaces> over = detail::lay_over_faces(surface, polyline, true)) {
+    return loop_over_faces(*over, polyline, options, context);
+  }
   const detail::StrandMaker maker(surface);
   const double cell = detail::first_cell_size(surface, {options.grid, options.cell, {}}, polyline, context);
   detail::ClassSetting setting = detail::class_setting(surface, maker, polyline, true, cell);
@@ -101,9 +119,6 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   }
   ClosedGeodesic result = found ? *std::move(found) : unfinished(shortening, status, problem);
   if (result.status != Status::ok) result.obstacle = {Obstacle::Kind::no_geodesic};
-  if (result.status != Status::ok && detail::is_kinked(surface)) {
-    result.message = "loops are pulled taut on one smooth face only, and this surface has edges";
-  }
   if (!found && shortening.strand().length() < setting.gap) {
     result.obstacle = {Obstacle::Kind::contracts};
     result.message = detail::explain(result);

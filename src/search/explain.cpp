@@ -97,7 +97,13 @@ std::string on_obstacle(const PathResult& result) {
                          obstacle.size);
     case Obstacle::Kind::loose_ends:
       return "the curve found does not lead from one end to the other; please report this";
-    case Obstacle::Kind::faces: return "the path over the edges of this surface was not found";
+    case Obstacle::Kind::faces: {
+      const std::string lost = result.status == Status::left_domain
+                                   ? "the path leaves the domain, and none was found along its border"
+                                   : "the path over the edges of this surface was not found";
+      if (result.reason.empty()) return lost;
+      return fmt::format("{}: {}{}", lost, result.reason, obstacle.place.size() > 0 ? ", " + near(obstacle.place) : "");
+    }
     case Obstacle::Kind::contracts:
       return "the loop contracts to where the surface is singular, or thinner than cells can tell";
     case Obstacle::Kind::refused: return "the request was refused";
@@ -111,6 +117,10 @@ std::string on_doubt(const PathResult& result, Doubt doubt) {
     case Doubt::beyond_window:
       return fmt::format("a shorter path may exist: the surface goes on beyond {}", text_of(result.window));
     case Doubt::start_failed:
+      if (result.obstacle.kind == Obstacle::Kind::faces) {
+        return fmt::format("a shorter path may exist: a way of length {:.6g} was not settled {}", result.obstacle.size,
+                           near(result.obstacle.place));
+      }
       if (std::isnan(result.marched)) return "a shorter path may exist: from one of the starts no geodesic was found";
       return fmt::format(
           "a shorter path may exist: the cells know a way of length {:.6g}, but no geodesic was found along it",
@@ -137,6 +147,27 @@ std::string on_doubt(const PathResult& result, Doubt doubt) {
 }
 
 }  // namespace
+
+std::string_view in_words(ChainFault fault) {
+  switch (fault) {
+    case ChainFault::none: return {};
+    case ChainFault::no_arc: return "a geodesic on one face was not found";
+    case ChainFault::no_corner: return "it runs over the end of an edge where no corner was found";
+    case ChainFault::turned_arc: return "an arc along an edge turns back";
+    case ChainFault::no_edge: return "it leaves its face where no edge is known";
+    case ChainFault::no_reflex_corner: return "it leaves its face by two edges that meet in no corner";
+    case ChainFault::singular: return "it leaves its face at a singular point";
+    case ChainFault::undetermined: return "the crossings of the edges are not determined";
+    case ChainFault::unsettled_stops: return "the crossings of the edges do not settle";
+    case ChainFault::unsettled_row: return "the row of faces along it does not settle";
+    case ChainFault::contracted: return "the loop has shrunk to a point of an edge or to a corner";
+    case ChainFault::bent_crossing: return "the tangents at an edge do not agree";
+    case ChainFault::bent_contact: return "it does not meet an edge that it follows along it";
+    case ChainFault::corner_with_room: return "it passes a corner that it could go round";
+    case ChainFault::not_pressed: return "it is not pressed against an edge that it follows";
+  }
+  return {};
+}
 
 std::string explain(const PathResult& result) {
   if (result.status != Status::ok) {

@@ -4,8 +4,6 @@
 // path; else another one is made.
 #include "search/facet_search.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +11,7 @@
 
 #include "core/stopwatch.hpp"
 #include "search/candidates.hpp"
+#include "search/chain_result.hpp"
 #include "search/shorter_paths.hpp"
 #include "strata/facet_ways.hpp"
 #include "strata/shorten_chain.hpp"
@@ -111,7 +110,7 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   shortest_way = ways.empty() ? 0 : ways.front().length;
   double best = std::numeric_limits<double>::infinity();
   double unsolved = best;
-  std::string why;
+  ChainTrouble trouble;  // of the shortest way that was not settled
   for (const FacetWay& way : ways) {
     if (way.length > slack * best) break;
     // The way's chain, and those that pass a corner on its other side.
@@ -123,7 +122,7 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
       for (FacetChain& other : others) chains.push_back(std::move(other));
       if (i == 0 && !chain.solved && way.length < unsolved) {
         unsolved = way.length;
-        why = chain.why;
+        trouble = chain.trouble;
       }
       if (!chain.solved) continue;
       best = std::min(best, chain.length);
@@ -133,24 +132,22 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   result.seconds.correct += watch.restart();
   std::stable_sort(found.begin(), found.end(),
                    [](const Found& a, const Found& b) { return a.chain.length < b.chain.length; });
-  result.message.clear();
+  result.obstacle = {};
+  result.reason = {};
   result.marched = shortest_way;
   if (found.empty()) {
-    if (!ways.empty()) result.message = fmt::format("the path over the edges of this surface was not found: {}", why);
+    if (!ways.empty()) add_trouble(trouble, unsolved, result);
     return false;
   }
   // Of a way that was not settled it is not known whether it is as short.
   result.doubts.remove(Doubt::start_failed);
   result.doubts.remove(Doubt::rivals_not_sought);
   if (unsolved < best) {
+    // It promised a shorter path.
     result.doubts.add(Doubt::start_failed);
+    result.obstacle = {Obstacle::Kind::faces, trouble.place, unsolved};
   } else if (unsolved <= (1 + kWaySlack) * best) {
     result.doubts.add(Doubt::rivals_not_sought);
-  }
-  // A way that promised a shorter path.
-  if (unsolved < best) {
-    result.message =
-        fmt::format("a shorter path may exist: a way of length {:.6g} was not settled ({})", unsolved, why);
   }
   return true;
 }
@@ -167,10 +164,7 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
   result.to = q;
   const bool ends = !extent.endless.any();
   const double apart = (q - p).norm();
-  if (apart == 0) {
-    result.message = "the two points are the same";
-    return result;
-  }
+  if (apart == 0) return result;
   const auto room = [&](double margin) {
     const Vector reach = Vector::Constant(3, margin);
     return intersection({p.cwiseMin(q) - reach, p.cwiseMax(q) + reach}, extent.whole);
@@ -185,7 +179,14 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
   double cells = kCells;
   bool first_try = true;  // else: after one that left doubts
   std::vector<Found> first_try_found;
-  std::string first_try_message;
+  Doubts first_try_doubts;
+  Obstacle first_try_obstacle;
+  const auto back_to_first = [&] {
+    found = std::move(first_try_found);
+    result.doubts = first_try_doubts;
+    result.obstacle = first_try_obstacle;
+    result.reason = {};
+  };
   for (int round = 0; round < kMostGraphs; ++round) {
     if (round > 0 || current == nullptr) {
       const Stopwatch watch;
@@ -195,8 +196,7 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
     double way = 0;
     solved = current != nullptr && correct(*current, p, q, result, found, way);
     if (!solved && !first_try) {
-      found = std::move(first_try_found);
-      result.message = first_try_message;
+      back_to_first();
       solved = true;
       break;
     }
@@ -221,22 +221,27 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
     if (holds && (fine || options_.cell > 0)) {
       if (!first_try) {
         // Twice looked at: the shorter one, and its doubts.
+        const bool settled_now = !result.doubts.has(Doubt::start_failed);
         if (first_try_found.front().chain.length <= length) {
-          found = std::move(first_try_found);
-          if (first_try_message.empty() || !result.message.empty()) result.message = first_try_message;
+          const Doubts doubts = result.doubts;
+          back_to_first();
+          if (settled_now) {
+            result.doubts = doubts;
+            result.obstacle = {};
+          }
         }
         break;
       }
-      if (result.message.empty() || options_.cell > 0) break;
+      if (!result.doubts.has(Doubt::start_failed) || options_.cell > 0) break;
       first_try = false;
       first_try_found = found;
-      first_try_message = result.message;
+      first_try_doubts = result.doubts;
+      first_try_obstacle = result.obstacle;
       cells = kFiner * kCells;
       box = needed;
       continue;
     }
     if (round + 1 == kMostGraphs) {
-      result.message = "a shorter path may exist: it was not looked for everywhere";
       result.doubts.add(Doubt::budget_spent);
       break;
     }
@@ -249,70 +254,23 @@ PathResult FacetSearch::search(const Vector& p, const Vector& q, const SurfaceEx
     result.num_cells = current->num_cells();
     result.grid = GridMethod::subdivide;
   }
-  if (!solved) {
-    if (result.message.empty()) result.message = "the two points are not joined by the faces that were found";
-    return result;
-  }
+  if (!solved) return result;
   deliver(found, result);
   return result;
 }
 
 void FacetSearch::deliver(const std::vector<Found>& found, PathResult& result) const {
-  const auto points_of = [&](const FacetChain& chain) {
-    Points points = chain.points();
-    points.col(0) = result.from;
-    points.col(points.cols() - 1) = result.to;
-    return points;
-  };
   const FacetChain& best = found.front().chain;
-  result.status = Status::ok;
-  result.length = best.length;
-  result.length_error = best.error + 4e-16 * best.length;
-  result.locally_shortest = best.locally_shortest;
-  if (best.locally_shortest) result.index = 0;
-  result.points = points_of(best);
-  result.start_direction = best.arcs.front().first;
-  result.end_direction = best.arcs.back().last;
-  result.num_iterations = best.rounds;
-  for (const ChainArc& arc : best.arcs) {
-    result.residual.surface = std::max(result.residual.surface, arc.residual.surface);
-    result.residual.geodesic_curvature = std::max(result.residual.geodesic_curvature, arc.residual.geodesic_curvature);
-    result.num_iterations += arc.iterations;
-  }
+  add_chain(*surface_, best, result);
   const FacetWay& way = found.front().way;
   result.marched = way.length;
   result.grid_path.resize(3, static_cast<Index>(way.points.size()));
   for (std::size_t i = 0; i < way.points.size(); ++i) result.grid_path.col(static_cast<Index>(i)) = way.points[i];
   for (const Found& one : found) {
-    add_candidate(result.candidates, {one.chain.length, one.chain.error + 4e-16 * one.chain.length,
-                                      one.chain.locally_shortest, points_of(one.chain)});
+    add_candidate(result.candidates, {one.chain.length, length_error_of(one.chain), one.chain.locally_shortest,
+                                      points_of(one.chain, result.from, result.to)});
   }
   result.tied = !first_is_unique(result.candidates, options_.tolerance);
-  for (std::size_t i = 0; i < best.arcs.size(); ++i) {
-    const ChainArc& arc = best.arcs[i];
-    PathPiece piece;
-    piece.kind = arc.face >= 0                    ? PathPiece::Kind::face
-                 : surface_->edge(arc.edge).b < 0 ? PathPiece::Kind::border
-                                                  : PathPiece::Kind::edge;
-    if (arc.face >= 0) piece.face = surface_->face(arc.face).text;
-    piece.length = arc.length;
-    piece.point = best.stops[i].x;
-    result.pieces.push_back(piece);
-    if (i + 1 == best.arcs.size()) break;
-    const ChainStop& stop = best.stops[i + 1];
-    if (stop.kind != ChainStop::Kind::crossing && stop.kind != ChainStop::Kind::corner) continue;
-    PathPiece meeting;
-    meeting.point = stop.x;
-    meeting.kind = stop.kind == ChainStop::Kind::corner ? PathPiece::Kind::corner : PathPiece::Kind::crossing;
-    if (stop.kind == ChainStop::Kind::corner) {
-      meeting.left = stop.left;
-      meeting.right = stop.right;
-    } else {
-      const Point3 t = surface_->tangent(stop.edge, stop.x);
-      meeting.left = meeting.right = std::acos(std::clamp(std::abs(arc.last.dot(t)), 0.0, 1.0));
-    }
-    result.pieces.push_back(meeting);
-  }
 }
 
 }  // namespace taut::detail

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "strata/facet_chain.hpp"
@@ -34,8 +33,9 @@ class FacetSearch {
   /// For another thread: shares the graph.
   [[nodiscard]] std::unique_ptr<FacetSearch> clone() const;
 
-  /// The shortest path from p to q, points of the surface. Where it is not found out, `status` is not_converged and the
-  /// message says why.
+  /// The shortest path from p to q, points of the surface. Where it is not found out, `status` is not_converged, and
+  /// the obstacle says why: none where no way was found at all. With the doubt start_failed the obstacle is that of the
+  /// way that was not settled.
   [[nodiscard]] PathResult find(const Vector& p, const Vector& q, const SurfaceExtent& extent);
 
  private:

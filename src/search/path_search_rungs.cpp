@@ -45,7 +45,6 @@ void PathSearch::go_over_faces(Inquiry& now) const {
     return;
   }
   // There are ways. Where none was made a geodesic, a search for smooth surfaces would not do better.
-  if (found->status != Status::ok) found->obstacle = {Obstacle::Kind::faces};
   now.doubts = found->doubts;
   now.best = std::move(found);
   now.settled = true;
@@ -284,6 +283,12 @@ void PathSearch::go_along_border(Inquiry& now) const {
   std::optional<PathResult> other = faces_.find(now.from(), now.to(), levels().extent());
   if (!other) return;
   now.add_effort(*other);
+  if (other->status != Status::ok && now.best->status == Status::left_domain &&
+      other->obstacle.kind == Obstacle::Kind::faces) {
+    now.best->obstacle = other->obstacle;
+    now.best->reason = other->reason;
+    now.best->message.clear();
+  }
   if (other->status != Status::ok || (now.has_path() && now.best->length <= other->length)) return;
   now.doubts = other->doubts;
   now.best = std::move(other);

@@ -24,7 +24,10 @@ bool ArcTracer::trace(ChainArc& arc, const Point3& a, const Point3& b) {
 bool ArcTracer::trace(FacetChain& chain) {
   chain.length = 0;
   for (std::size_t i = 0; i < chain.arcs.size(); ++i) {
-    if (!trace(chain.arcs[i], chain.stops[i].x, chain.stops[i + 1].x)) return false;
+    if (!trace(chain.arcs[i], chain.stops[i].x, chain.stops[i + 1].x)) {
+      lost_ = i;
+      return false;
+    }
     chain.length += chain.arcs[i].length;
   }
   return std::isfinite(chain.length);

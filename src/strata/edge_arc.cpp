@@ -4,7 +4,7 @@
 // the last two are not small, the piece is halved.
 #include "strata/edge_arc.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,8 +37,10 @@ constexpr double kInLine = 0.99;
 constexpr double kAhead = 0.02;
 /// Halvings of one arc.
 constexpr int kBudget = 400;
-constexpr int kMostSteps = 30;
+constexpr int kMostSteps = 12;
 constexpr double kRounding = 1e-14;
+/// Points that move by no more than this, of the model's size, are found. Where rounding is larger the steps run out.
+constexpr double kSettled = 1e-15;
 
 double legendre(int degree, double x) {
   double before = 1;
@@ -109,23 +111,33 @@ class EdgeTracer {
 
   [[nodiscard]] double along(const Point3& x, const Point3& e) { return std::abs(s_.tangent(edge_, x).dot(e)); }
 
-  /// The point of the edge near x in the plane across e through `at`.
-  [[nodiscard]] bool cut(const Point3& at, const Point3& e, Point3& x) {
+  /// The points of the edge near those of x in the planes across e through those of `at`, and how fast the edge runs
+  /// along e there.
+  [[nodiscard]] bool cut(const Points& at, const Point3& e, Points& x, Vector& along) {
     const SharpEdge edge = s_.edge(edge_);
+    Vector value_f;
+    Vector value_c;
+    Points f;
+    Points c;
+    along.resize(x.cols());
     for (int step = 0; step < kMostSteps; ++step) {
-      Point3 f;
-      Point3 c;
-      const double value_f = s_.function(edge.a, x, f);
-      const double value_c = s_.condition(edge.condition, x, c);
-      Eigen::Matrix3d rows;
-      rows.row(0) = f.transpose() / f.norm();
-      rows.row(1) = c.transpose() / c.norm();
-      rows.row(2) = e.transpose();
-      const Point3 off(value_f / f.norm(), value_c / c.norm(), (x - at).dot(e));
-      const Point3 change = rows.partialPivLu().solve(off);
-      if (!change.allFinite()) return false;
-      x -= change;
-      if (change.norm() <= 1e-15 * s_.scale) return true;
+      s_.functions(edge.a, x, value_f, f);
+      s_.conditions(edge.condition, x, value_c, c);
+      double largest = 0;
+      for (Index j = 0; j < x.cols(); ++j) {
+        const Point3 a = f.col(j);
+        const Point3 b = c.col(j);
+        // Of the equations a . change = value_f, b . change = value_c, e . change = off.
+        const Point3 across = a.cross(b);
+        const double det = across.dot(e);
+        const double off = (Point3(x.col(j)) - Point3(at.col(j))).dot(e);
+        const Point3 change = (value_f(j) * b.cross(e) + value_c(j) * e.cross(a) + off * across) / det;
+        if (!change.allFinite()) return false;
+        x.col(j) -= change;
+        along(j) = std::abs(det) / across.norm();
+        largest = std::max(largest, change.norm());
+      }
+      if (largest <= kSettled * s_.scale) return true;
     }
     return true;
   }
@@ -134,27 +146,34 @@ class EdgeTracer {
     const double chord = (to - from).norm();
     const Point3 e = (to - from) / chord;
     const Point3 centre = (from + to) / 2;
-    middle = centre;
-    if (!cut(centre, e, middle)) return Piece::lost;
+    Vector rate;
+    at_ = centre;
+    x_ = centre;
+    if (!cut(at_, e, x_, rate)) return Piece::lost;
+    middle = x_.col(0);
     const Point3 bulge = middle - centre;
     if (bulge.norm() > kStray * chord) return Piece::halve;
-    if (std::min({along(from, e), along(to, e), along(middle, e)}) < kStraight) return Piece::halve;
-    std::array<Point3, kPoints> x;
+    if (std::min({along(from, e), along(to, e), rate(0)}) < kStraight) return Piece::halve;
+    at_.resize(3, kPoints);
+    x_.resize(3, kPoints);
+    for (std::size_t i = 0; i < kPoints; ++i) {
+      const auto j = static_cast<Index>(i);
+      at_.col(j) = centre + kNode[i] / 2 * (to - from);
+      x_.col(j) = at_.col(j) + (1 - kNode[i] * kNode[i]) * bulge;
+    }
+    if (!cut(at_, e, x_, rate)) return Piece::lost;
     double mean = 0;
     double sixth = 0;
     double seventh = 0;
     for (std::size_t i = 0; i < kPoints; ++i) {
-      const Point3 at = centre + kNode[i] / 2 * (to - from);
-      x[i] = at + (1 - kNode[i] * kNode[i]) * bulge;
-      if (!cut(at, e, x[i])) return Piece::lost;
-      const double speed = kWeight[i] / along(x[i], e);
+      const double speed = kWeight[i] / rate(static_cast<Index>(i));
       mean += speed / 2;
       sixth += speed * 6.5 * legendre(6, kNode[i]);
       seventh += speed * 7.5 * legendre(7, kNode[i]);
     }
     if (!(std::max(std::abs(sixth), std::abs(seventh)) <= kResolved * mean)) return Piece::halve;
     length_ += mean * chord;
-    line_.insert(line_.end(), x.begin(), x.end());
+    for (Index j = 0; j < kPoints; ++j) line_.emplace_back(x_.col(j));
     line_.push_back(to);
     return Piece::added;
   }
@@ -163,6 +182,8 @@ class EdgeTracer {
   int edge_;
   double length_ = 0;
   std::vector<Point3> line_;
+  Points at_;  // scratch of add_piece
+  Points x_;
   int budget_ = kBudget;
 };
 

@@ -16,7 +16,7 @@ namespace {
 /// Nodes of a polyline that a geodesic starts from.
 constexpr Index kMostStart = 24;
 /// The fields' steps: their ends to 1e-6 or so are all that Newton's method for the stops wants.
-constexpr int kSteps = 24;
+constexpr int kSteps = 32;
 
 void set_straight(const Point3& a, const Point3& b, ChainArc& arc) {
   arc.length = (b - a).norm();
@@ -25,6 +25,8 @@ void set_straight(const Point3& a, const Point3& b, ChainArc& arc) {
   arc.m12 = std::max(arc.length, 1e-300);
   arc.m = arc.slope = 1;
   arc.shortest = true;
+  arc.index = 0;
+  arc.line.resize(3, 0);
 }
 
 void set_fields(SmoothFace& face, const SpectralCurve& curve, ChainArc& arc) {
@@ -65,10 +67,14 @@ void set_fields(SmoothFace& face, const SpectralCurve& curve, ChainArc& arc) {
     const Eigen::Vector2d k4 = slope(y + h * k3, curvature[i + 2]);
     y += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
   };
+  arc.index = 0;
   for (std::size_t i = 0; i < 2 * kSteps; i += 2) {
+    const double before = field.x();
     step(field, i);
     step(field2, i);
+    if (i > 0 && (before > 0) != (field.x() > 0)) ++arc.index;
   }
+  arc.line = x;
   arc.m12 = field.x();
   arc.slope = field.y();
   arc.m = field2.x();
@@ -111,7 +117,6 @@ bool trace_face_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, con
   arc.shortest = found.locally_shortest;
   arc.residual = found.residual;
   arc.iterations = found.num_iterations;
-
   set_fields(face, found.curve, arc);
   return std::isfinite(arc.m12) && std::isfinite(arc.m) && arc.m12 != 0;
 }

@@ -27,7 +27,7 @@ constexpr int kMostShifts = 4;
 /// Turns of a path that are rounding, of the model's size: less presses against an edge.
 constexpr double kPressed = 1e-9;
 
-ChainMove stuck(const char* why) { return {.stuck = why}; }
+ChainMove stuck(ChainFault fault, const Point3& place) { return {.stuck = {fault, place}}; }
 
 /// The part of an arc beyond its face.
 struct Departure {
@@ -40,13 +40,10 @@ struct Departure {
 
 Departure departure_of(FacetedSurface& surface, const ChainArc& arc) {
   Departure found;
-  found.line = at_equal_parts(arc.points, kParts);
-  const Index n = found.line.cols();
-  found.condition.assign(static_cast<std::size_t>(n), -1);
-  for (Index j = 0; j < n; ++j) {
-    Point3 x = found.line.col(j);
-    // Points between the nodes of a polyline are off the surface: the foot counts.
-    if (j > 0 && j + 1 < n) (void)surface.project(arc.face, {}, x);
+  found.line = arc.line.cols() > 0 ? arc.line : at_equal_parts(arc.points, kParts);
+  found.condition.assign(static_cast<std::size_t>(found.line.cols()), -1);
+  for (const Index j : surface.not_inside(arc.face, found.line)) {
+    const Point3 x = found.line.col(j);
     const double out = surface.violation(arc.face, x, &found.condition[static_cast<std::size_t>(j)]);
     if (!(out > ChainTolerances::off_face * surface.scale)) continue;
     if (found.first < 0) found.first = j;
@@ -71,7 +68,7 @@ ChainMove bend_in_corners(FacetedSurface& surface, FacetChain& chain, std::size_
       to = line.col(row[k].first);
       if (!surface.project(face, {row[k - 1].second, row[k].second}, to) ||
           surface.violation(face, to) > ChainTolerances::on_edge * surface.scale) {
-        return stuck("a path leaves its face by two edges that meet in no corner");
+        return stuck(ChainFault::no_reflex_corner, to);
       }
       corners.push_back({.kind = Kind::corner, .x = to});
     }
@@ -116,7 +113,7 @@ ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i
   const auto condition_at = [&](Index j) { return out.condition[static_cast<std::size_t>(j)]; };
   const int enter = condition_at(out.first);
   if (!std::isfinite(out.deepest) || enter < 0 || condition_at(out.last) < 0) {
-    return stuck("a path leaves its face where no edge is known");
+    return stuck(ChainFault::no_edge, out.line.col(out.first));
   }
   // The edges it passes beyond, in order: over the corners between them, which reach into the face.
   std::vector<std::pair<Index, int>> row;
@@ -144,24 +141,25 @@ ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i
       if (surface.project(face, {enter}, x)) marks.push_back(x);
     }
   }
-  if (marks.size() < 2) return stuck("a path leaves its face over an edge that was not found");
+  if (marks.size() < 2) return stuck(ChainFault::no_edge, out.line.col(out.first));
   const Point3 a = marks.front();
   const Point3 b = marks.back();
   const Point3 middle = marks[marks.size() / 2];
   if (edge < 0) {
     const std::optional<Star> star = surface.star(middle, 1e-8 * surface.scale);
-    if (!star) return stuck("a path leaves its face at a singular point");
+    if (!star) return stuck(ChainFault::singular, middle);
     for (const Wedge& wedge : star->wedges) {
       if (wedge.face == face && wedge.second_edge >= 0) edge = wedge.second_edge;
     }
   }
-  if (edge < 0) return stuck("a path leaves its face where no edge is known");
+  if (edge < 0) return stuck(ChainFault::no_edge, middle);
   const SharpEdge over = surface.edge(edge);
   const int other = over.a == face ? over.b : over.a;
   const bool follows = other < 0 || pressed(surface, edge, middle) <= kPressed / surface.scale;
   // Next to a crossing of the same edge, the path comes to the edge, or leaves it, on the face beyond.
   const auto crosses = [&](std::size_t stop) {
-    return follows && chain.stops[stop].kind == Kind::crossing && chain.stops[stop].edge == edge;
+    const bool inner = stop > 0 && stop + 1 < chain.stops.size();
+    return inner && follows && chain.stops[stop].kind == Kind::crossing && chain.stops[stop].edge == edge;
   };
   const bool from_beyond = crosses(i);
   const bool to_beyond = crosses(i + 1);

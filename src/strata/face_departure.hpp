@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 
 #include "strata/facet_chain.hpp"
 #include "strata/faceted_surface.hpp"
@@ -11,7 +10,7 @@ namespace taut::detail {
 /// What was made of a chain.
 struct ChainMove {
   bool changed = false;
-  std::string stuck = {};  ///< why it is not known what to do; empty: it is
+  ChainTrouble stuck = {};  ///< why it is not known what to do
 };
 
 /// Arc i, traced, may leave its face: over an edge, which it then crosses or follows, or over corners that reach into

@@ -12,6 +12,8 @@
 #include <numeric>
 #include <optional>
 #include <set>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace taut::detail {
@@ -35,8 +37,9 @@ class Tree {
       : graph_(graph),
         per_width_(1 / (kWidth * graph.size())),
         length_(graph.nodes().size(), kFar),
-        before_(graph.nodes().size(), kNoNodeBefore) {
-    for (const FacetLink& link : from) reach(link.to, static_cast<double>(link.length), kNoNodeBefore);
+        before_(graph.nodes().size(), kNoNodeBefore),
+        by_(graph.nodes().size(), nullptr) {
+    for (const FacetLink& link : from) reach(link, 0, kNoNodeBefore);
   }
 
   /// All lengths up to this are known.
@@ -45,21 +48,24 @@ class Tree {
   [[nodiscard]] double length(std::uint32_t node) const { return length_[node]; }
   /// The node before, or kNoNodeBefore after the end itself.
   [[nodiscard]] std::uint32_t before(std::uint32_t node) const { return before_[node]; }
+  /// The step by which it is come to: of the node before, or of the end. Null where the tree does not reach it.
+  [[nodiscard]] const FacetLink* by(std::uint32_t node) const { return by_[node]; }
+  /// No way from the end to the node is shorter, of those that were not left.
+  [[nodiscard]] double least(std::uint32_t node) const { return std::min(length_[node], radius()); }
 
   /// Takes out one bucket; `met` is called with every node in it. Ways to `other`, the other end, that are longer than
-  /// `longest` are left: a straight line is a lower bound of what they lack.
+  /// `longest` are left: a straight line and the other tree are lower bounds of what they lack.
   template <class Met>
-  void advance(const Point3& other, double longest, const Met& met) {
+  void advance(const Tree& there, const Point3& other, double longest, const Met& met) {
     std::vector<Entry>& bucket = buckets_[current_ % kBuckets];
     // It grows while it is worked off.
     for (std::size_t i = 0; i < bucket.size(); ++i) {
       const Entry entry = bucket[i];
       if (entry.length > length_[entry.node]) continue;
       met(entry.node);
+      if (entry.length + there.least(entry.node) > longest) continue;
       if (entry.length + (graph_.nodes()[entry.node].x - other).norm() > longest) continue;
-      for (const FacetLink& link : graph_.links(entry.node)) {
-        reach(link.to, entry.length + static_cast<double>(link.length), entry.node);
-      }
+      for (const FacetLink& link : graph_.links(entry.node)) reach(link, entry.length, entry.node);
     }
     open_ -= bucket.size();
     bucket.clear();
@@ -75,10 +81,13 @@ class Tree {
     double length;
     std::uint32_t node;
   };
-  void reach(std::uint32_t node, double length, std::uint32_t before) {
+  void reach(const FacetLink& link, double length_before, std::uint32_t before) {
+    const std::uint32_t node = link.to;
+    const double length = length_before + static_cast<double>(link.length);
     if (!(length < length_[node])) return;
     length_[node] = length;
     before_[node] = before;
+    by_[node] = &link;
     const auto bucket = std::max(current_, static_cast<std::uint64_t>(length * per_width_));
     buckets_[bucket % kBuckets].push_back({length, node});
     ++open_;
@@ -88,12 +97,13 @@ class Tree {
   double per_width_;
   std::vector<double> length_;
   std::vector<std::uint32_t> before_;
+  std::vector<const FacetLink*> by_;
   std::array<std::vector<Entry>, kBuckets> buckets_;
   std::uint64_t current_ = 0;
   std::size_t open_ = 0;
 };
 
-std::vector<int> common(const std::vector<int>& a, const std::vector<int>& b) {
+std::vector<int> common_faces(const std::vector<int>& a, const std::vector<int>& b) {
   std::vector<int> both;
   for (const int face : a) {
     if (std::find(b.begin(), b.end(), face) != b.end()) both.push_back(face);
@@ -124,6 +134,39 @@ std::vector<int> faces_of(const FacetNode& from, std::uint32_t bits) {
   return faces;
 }
 
+/// Sets of faces by numbers.
+class FaceSets {
+ public:
+  /// Of a step from a node.
+  [[nodiscard]] int of(const FacetNode& from, std::uint32_t bits) {
+    if (from.faces.size() > 1) return of(faces_of(from, bits));
+    const auto face = static_cast<std::size_t>(from.faces.front());
+    if (single_.size() <= face) single_.resize(face + 1, -1);
+    if (single_[face] < 0) single_[face] = of(from.faces);
+    return single_[face];
+  }
+  /// -1: none.
+  [[nodiscard]] int common(int a, int b) {
+    if (a == b) return a;
+    const auto [known, added] = common_.try_emplace({a, b}, -1);
+    if (!added) return known->second;
+    const std::vector<int> both = common_faces(sets_[static_cast<std::size_t>(a)], sets_[static_cast<std::size_t>(b)]);
+    return known->second = both.empty() ? -1 : of(both);
+  }
+
+ private:
+  [[nodiscard]] int of(const std::vector<int>& faces) {
+    const auto [known, added] = number_.try_emplace(faces, static_cast<int>(sets_.size()));
+    if (added) sets_.push_back(faces);
+    return known->second;
+  }
+
+  std::vector<std::vector<int>> sets_;
+  std::map<std::vector<int>, int> number_;
+  std::vector<int> single_;  // of one face
+  std::map<std::pair<int, int>, int> common_;
+};
+
 /// Both trees, and what is asked of them.
 class WaySearch {
  public:
@@ -146,6 +189,8 @@ class WaySearch {
   using Row = std::vector<int>;
   [[nodiscard]] double total(std::uint32_t node) const { return tree(0).length(node) + tree(1).length(node); }
   [[nodiscard]] const Tree& tree(std::size_t end) const { return *trees_[end]; }
+  /// Ways no longer than so many times the shortest tell rows of faces.
+  [[nodiscard]] static double slack_of_rows(double slack) { return 1 + (slack - 1) / 2; }
   void grow(double slack);
   [[nodiscard]] FacetWay way_through(std::uint32_t node) const;
   [[nodiscard]] FacetWay direct_way() const;
@@ -160,8 +205,11 @@ class WaySearch {
   /// The row of faces from an end to a node.
   struct Label {
     int before;  // -1: none
-    Row faces;   // all steps since then lie on these
+    int faces;   // the set of those that all steps since then lie on
   };
+  [[nodiscard]] static std::uint64_t key_of(int a, int b) {
+    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32 | static_cast<std::uint32_t>(b);
+  }
 
   FacetedSurface& surface_;
   const FacetGraph& graph_;
@@ -172,8 +220,10 @@ class WaySearch {
   std::array<std::optional<Tree>, 2> trees_;
   double best_ = kFar;
   std::array<std::vector<Label>, 2> labels_;
-  std::array<std::map<std::pair<int, Row>, int>, 2> label_of_row_;
+  std::array<std::unordered_map<std::uint64_t, int>, 2> label_of_row_;
   std::array<std::vector<int>, 2> label_of_node_;
+  std::vector<std::uint32_t> open_;  // scratch of label
+  FaceSets sets_;
 };
 
 /// Half-way, a way's lengths to its ends differ by no more than a step. Rows of faces are told apart along the whole
@@ -182,27 +232,22 @@ void WaySearch::grow(double slack) {
   best_ = static_cast<double>(direct_.length);
   for (const std::size_t end : {0U, 1U}) trees_[end].emplace(graph_, links_[end]);
   const double step = FacetGraph::kLongStep * reach_;
-  while (true) {
-    const double radius = std::min(trees_[0]->radius(), trees_[1]->radius());
-    if (radius > std::max((slack * best_ + step) / 2, (1 + (slack - 1) / 2) * best_)) return;
-    if (trees_[0]->ended() && trees_[1]->ended()) return;
-    const std::size_t end = trees_[0]->radius() <= trees_[1]->radius() ? 0 : 1;
-    trees_[end]->advance(ends_[1 - end].x, slack * best_,
+  const auto advance = [&](std::size_t end, double part) {
+    trees_[end]->advance(tree(1 - end), ends_[1 - end].x, part * best_,
                          [&](std::uint32_t node) { best_ = std::min(best_, total(node)); });
-  }
+  };
+  const auto nearer = [&] { return trees_[0]->radius() <= trees_[1]->radius() ? 0U : 1U; };
+  const auto ended = [&] { return trees_[0]->ended() && trees_[1]->ended(); };
+  while (!ended() && tree(nearer()).radius() <= (slack * best_ + step) / 2) advance(nearer(), slack);
+  // Beyond the middle the other tree knows what ways lack.
+  const double row_slack = slack_of_rows(slack);
+  while (!ended() && tree(nearer()).radius() <= row_slack * best_) advance(nearer(), row_slack);
 }
 
 /// Faces of the step by which the tree of an end comes to a node.
 std::vector<int> WaySearch::step_faces(std::size_t end, std::uint32_t node) const {
   const std::uint32_t before = tree(end).before(node);
-  if (before == kNoNodeBefore) {
-    const auto link =
-        std::find_if(links_[end].begin(), links_[end].end(), [&](const FacetLink& l) { return l.to == node; });
-    return faces_of(ends_[end], link->faces);
-  }
-  const auto links = graph_.links(before);
-  const auto link = std::find_if(links.begin(), links.end(), [&](const FacetLink& l) { return l.to == node; });
-  return faces_of(graph_.nodes()[before], link->faces);
+  return faces_of(before == kNoNodeBefore ? ends_[end] : graph_.nodes()[before], tree(end).by(node)->faces);
 }
 
 FacetWay WaySearch::way_of(const std::vector<const FacetNode*>& nodes, double length,
@@ -290,51 +335,44 @@ std::vector<std::uint32_t> WaySearch::hollows(const std::vector<std::uint32_t>& 
 int WaySearch::label(std::size_t end, std::uint32_t node) {
   std::vector<int>& labels = label_of_node_[end];
   labels.resize(graph_.nodes().size(), -1);
-  std::vector<std::uint32_t> open;
-  for (std::uint32_t at = node; at != kNoNodeBefore && labels[at] < 0; at = tree(end).before(at)) open.push_back(at);
-  while (!open.empty()) {
-    const std::uint32_t at = open.back();
-    open.pop_back();
+  open_.clear();
+  for (std::uint32_t at = node; at != kNoNodeBefore && labels[at] < 0; at = tree(end).before(at)) open_.push_back(at);
+  for (; !open_.empty(); open_.pop_back()) {
+    const std::uint32_t at = open_.back();
     const std::uint32_t before = tree(end).before(at);
-    std::vector<int> faces = step_faces(end, at);
+    const FacetNode& from = before == kNoNodeBefore ? ends_[end] : graph_.nodes()[before];
+    int faces = sets_.of(from, tree(end).by(at)->faces);
     int previous = before == kNoNodeBefore ? -1 : labels[before];
     if (previous >= 0) {
       const Label& last = labels_[end][static_cast<std::size_t>(previous)];
-      std::vector<int> both = common(last.faces, faces);
-      if (!both.empty()) {
-        faces = std::move(both);
+      if (const int both = sets_.common(last.faces, faces); both >= 0) {
+        faces = both;
         previous = last.before;
       }
     }
     const auto [known, added] =
-        label_of_row_[end].try_emplace({previous, faces}, static_cast<int>(labels_[end].size()));
-    if (added) labels_[end].push_back({previous, std::move(faces)});
+        label_of_row_[end].try_emplace(key_of(previous, faces), static_cast<int>(labels_[end].size()));
+    if (added) labels_[end].push_back({previous, faces});
     labels[at] = known->second;
   }
   return labels[node];
 }
 
-/// The sets of faces of the row's parts, with -1 between them.
+/// The numbers of the sets of faces of the row's parts.
 WaySearch::Row WaySearch::row_through(std::uint32_t node) {
   const auto half = [&](std::size_t end) {
-    std::vector<const Row*> parts;
+    Row parts;
     for (int at = label(end, node); at >= 0; at = labels_[end][static_cast<std::size_t>(at)].before) {
-      parts.push_back(&labels_[end][static_cast<std::size_t>(at)].faces);
+      parts.push_back(labels_[end][static_cast<std::size_t>(at)].faces);
     }
     return parts;
   };
-  std::vector<const Row*> first = half(0);
-  const std::vector<const Row*> second = half(1);
-  Row row;
-  const auto append = [&](const Row& part) {
-    row.insert(row.end(), part.begin(), part.end());
-    row.push_back(-1);
-  };
-  for (std::size_t i = first.size(); i-- > 1;) append(*first[i]);
-  const Row both = common(*first.front(), *second.front());
-  append(both.empty() ? *first.front() : both);
-  if (both.empty()) append(*second.front());
-  for (std::size_t i = 1; i < second.size(); ++i) append(*second[i]);
+  Row row = half(0);
+  const Row second = half(1);
+  const int both = sets_.common(row.front(), second.front());
+  std::reverse(row.begin(), row.end());
+  if (both >= 0) row.back() = both;
+  row.insert(row.end(), second.begin() + (both >= 0 ? 1 : 0), second.end());
   return row;
 }
 
@@ -347,7 +385,7 @@ void WaySearch::add(const FacetWay& way, bool is_hollow, std::set<Row>& rows, st
   };
   std::vector<Part> parts;
   for (std::size_t i = 0; i < way.faces.size(); ++i) {
-    Row both = parts.empty() ? Row{} : common(parts.back().faces, way.faces[i]);
+    Row both = parts.empty() ? Row{} : common_faces(parts.back().faces, way.faces[i]);
     if (both.empty()) {
       parts.push_back({i, way.faces[i]});
     } else {
@@ -375,28 +413,31 @@ std::vector<FacetWay> WaySearch::find(double slack) {
   if (!(best_ < kFar)) return found;
   const auto n = static_cast<std::uint32_t>(graph_.nodes().size());
   const double half = FacetGraph::kLongStep * reach_;
-  const double longest_row = (1 + (slack - 1) / 2) * best_;
-  std::vector<std::uint32_t> middle;
-  std::vector<std::uint32_t> others;
+  const double longest_row = slack_of_rows(slack) * best_;
+  using Through = std::pair<double, std::uint32_t>;  // the length of the way through a node
+  std::vector<Through> near_middle;
+  std::vector<Through> others;
   for (std::uint32_t i = 0; i < n; ++i) {
-    if (total(i) > slack * best_) continue;
-    if (std::abs(tree(0).length(i) - tree(1).length(i)) <= half) middle.push_back(i);
-    if (total(i) <= longest_row) others.push_back(i);
+    const double length = total(i);
+    if (length > slack * best_) continue;
+    if (std::abs(tree(0).length(i) - tree(1).length(i)) <= half) near_middle.emplace_back(length, i);
+    if (length <= longest_row) others.emplace_back(length, i);
   }
-  const auto is_shorter = [&](std::uint32_t i, std::uint32_t j) { return total(i) < total(j); };
-  std::stable_sort(middle.begin(), middle.end(), is_shorter);
+  std::sort(near_middle.begin(), near_middle.end());
+  std::vector<std::uint32_t> middle;
+  for (const auto& [length, node] : near_middle) middle.push_back(node);
   if (static_cast<double>(direct_.length) <= slack * best_) found.push_back(direct_way());
   std::set<Row> rows;
   for (const std::uint32_t hollow : hollows(middle)) {
     add(way_through(hollow), true, rows, found);
   }
   // Not only half-way: another row may pass a corner near an end on its other side.
-  std::stable_sort(others.begin(), others.end(), is_shorter);
-  std::set<std::pair<int, int>> labels;
+  std::sort(others.begin(), others.end());
+  std::unordered_set<std::uint64_t> labels;
   std::set<Row> seen;
-  for (const std::uint32_t node : others) {
+  for (const auto& [length, node] : others) {
     if (found.size() >= kMostWays) break;
-    if (!labels.insert({label(0, node), label(1, node)}).second) continue;
+    if (!labels.insert(key_of(label(0, node), label(1, node))).second) continue;
     if (seen.insert(row_through(node)).second) add(way_through(node), false, rows, found);
   }
   std::stable_sort(found.begin(), found.end(),

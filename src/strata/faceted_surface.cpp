@@ -271,6 +271,21 @@ double FacetedSurface::violation(int face, const Point3& x, int* condition) {
   return worst;
 }
 
+std::vector<Index> FacetedSurface::not_inside(int face, const Points& x) {
+  Points kinks(num_kinks_, x.cols());
+  Points domain(num_domain_, x.cols());
+  if (conditions_) conditions_->evaluate({.n = x.cols(), .x = x.data(), .value = kinks.data()});
+  if (domain_) domain_->evaluate({.n = x.cols(), .x = x.data(), .value = domain.data()});
+  std::vector<Index> found;
+  sides_.resize(static_cast<std::size_t>(num_kinks_));
+  for (Index j = 0; j < x.cols(); ++j) {
+    for (int i = 0; i < num_kinks_; ++i) sides_[static_cast<std::size_t>(i)] = kinks(i, j) >= 0 ? 1 : -1;
+    const bool inside = (domain.col(j).array() >= 0).all() && face_of(sides_) == face;
+    if (!inside) found.push_back(j);
+  }
+  return found;
+}
+
 int FacetedSurface::smooth_condition(int index, const FormulaKinks::Sides& sides) {
   if (index >= num_kinks_ && !(kinks_ && kinks_->in_domain())) {
     const auto [at, added] = smooth_of_.try_emplace({1, static_cast<NodeId>(index - num_kinks_)}, 0);
@@ -326,6 +341,39 @@ double FacetedSurface::condition(int condition, const Point3& x, Point3& gradien
   c.evaluator->evaluate({.n = 1, .x = x.data(), .value = values.data(), .jacobian = gradients.data()});
   gradient = gradients.col(c.component);
   return values(c.component);
+}
+
+void FacetedSurface::functions(int face, const Points& x, Vector& value, Points& gradient) {
+  const SmoothFace& of = this->face(face);
+  value.resize(x.cols());
+  gradient.setZero(3, x.cols());
+  if (of.flat) {
+    gradient.colwise() = of.flat->gradient;
+    value = (of.flat->gradient.transpose() * x).transpose().array() + of.flat->offset;
+    return;
+  }
+  of.evaluator->evaluate({.n = x.cols(), .x = x.data(), .value = value.data(), .jacobian = gradient.data()});
+}
+
+void FacetedSurface::conditions(int condition, const Points& x, Vector& value, Points& gradient) {
+  const Condition& c = smooth_[static_cast<std::size_t>(condition)];
+  const Index n = x.cols();
+  value.resize(n);
+  gradient.setZero(3, n);
+  if (c.flat) {
+    gradient.colwise() = c.flat->gradient;
+    value = (c.flat->gradient.transpose() * x).transpose().array() + c.flat->offset;
+    return;
+  }
+  if (c.count == 1) {
+    c.evaluator->evaluate({.n = n, .x = x.data(), .value = value.data(), .jacobian = gradient.data()});
+    return;
+  }
+  Points values(c.count, n);
+  Points gradients = Points::Zero(3, c.count * n);
+  c.evaluator->evaluate({.n = n, .x = x.data(), .value = values.data(), .jacobian = gradients.data()});
+  value = values.row(c.component).transpose();
+  for (Index j = 0; j < n; ++j) gradient.col(j) = gradients.col(j * c.count + c.component);
 }
 
 /// Newton's method with the shortest step, halved while the rows' scaled residual grows.

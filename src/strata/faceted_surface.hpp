@@ -100,12 +100,18 @@ class FacetedSurface {
   /// condition that fails goes to `condition`.
   [[nodiscard]] double violation(int face, const Point3& x, int* condition = nullptr);
 
+  /// Which of these points (3 x n) are not inside the face or on its border beyond doubt.
+  [[nodiscard]] std::vector<Index> not_inside(int face, const Points& x);
+
   /// Condition `kink` or domain component made smooth by the sides around it; an index for `project`.
   [[nodiscard]] int smooth_condition(int index, const FormulaKinks::Sides& sides);
   /// A point near x with F_face = 0 and all these conditions zero. False where Newton's method fails.
   [[nodiscard]] bool project(int face, const std::vector<int>& conditions, Point3& x);
   [[nodiscard]] double function(int face, const Point3& x, Point3& gradient);
   [[nodiscard]] double condition(int condition, const Point3& x, Point3& gradient);
+  /// The same of n points (3 x n): n values and 3 x n gradients.
+  void functions(int face, const Points& x, Vector& value, Points& gradient);
+  void conditions(int condition, const Points& x, Vector& value, Points& gradient);
   /// Unit tangent of an edge.
   [[nodiscard]] Point3 tangent(int edge, const Point3& x);
   /// x moved along the edge by about `step`; false where that fails.

@@ -14,6 +14,7 @@
 #include "curve/polyline.hpp"
 #include "strata/arc_tracer.hpp"
 #include "strata/chain_tolerances.hpp"
+#include "strata/closed_chain.hpp"
 #include "strata/corner_turn.hpp"
 #include "strata/edge_contact.hpp"
 #include "strata/empty_arcs.hpp"
@@ -26,17 +27,15 @@ namespace {
 using Kind = ChainStop::Kind;
 constexpr int kMostRounds = 60;
 /// What the last check allows: differences of tangents where an edge is followed, which are known to the square root of
-/// the step's rounding; angles of corners, radians; turns of a followed edge, of the model's size; and directions of
-/// negative second variation, the same.
+/// the step's rounding; angles of corners, radians; and turns of a followed edge, of the model's size.
 constexpr double kContactTangents = 1e-5;
 constexpr double kCornerAngle = 1e-5;
 constexpr double kPressed = 1e-6;
-constexpr double kFalling = 1e-9;
+/// Second variations that are smaller, of the model's size, are neutral: Jacobi fields are good to some 1e-6.
+constexpr double kFalling = 1e-5;
 /// A corner is as near to where Newton's method stopped at the end of an edge, of the model's size.
 constexpr double kNearCorner = 1e-6;
 constexpr double kAroundEnd = 1e-7;
-
-constexpr const char* kNoGeodesic = "a geodesic on one face was not found";
 
 /// The stop at the end of its edge becomes a corner: with the condition that fails beyond it, or one of those of the
 /// edges that meet there.
@@ -59,10 +58,10 @@ ChainMove end_in_corner(FacetedSurface& surface, FacetChain& chain, const StopAt
     if (!star || (star->closed && star->wedges.size() < 3)) continue;
     stop.x = x;
     stop.kind = Kind::corner;
-    chain.arcs[end.stop - 1].done = chain.arcs[end.stop].done = false;
+    chain.before(end.stop).done = chain.arcs[end.stop].done = false;
     return {.changed = true};
   }
-  return {.stuck = "a path runs over the end of an edge where no corner was found"};
+  return {.stuck = {ChainFault::no_corner, stop.x}};
 }
 
 /// An arc along an edge that runs backwards is none.
@@ -75,7 +74,7 @@ ChainMove drop_turned_arc(FacetChain& chain) {
     if (!(before.last.dot(arc.first) < 0 && after.first.dot(arc.last) < 0)) continue;
     const int face = before.face;
     if (after.face != face || chain.stops[i].kind != Kind::contact || chain.stops[i + 1].kind != Kind::contact) {
-      return {.stuck = "an arc along an edge turns back"};
+      return {.stuck = {ChainFault::turned_arc, chain.stops[i].x}};
     }
     chain.stops.erase(chain.stops.begin() + static_cast<std::ptrdiff_t>(i));
     chain.arcs.erase(chain.arcs.begin() + static_cast<std::ptrdiff_t>(i));
@@ -84,6 +83,26 @@ ChainMove drop_turned_arc(FacetChain& chain) {
     return {.changed = true};
   }
   return {};
+}
+
+/// A closed chain begins where its row of arcs needs no change: away from short arcs, in a crossing rather than in a
+/// contact, there rather than in a corner, and in none of `not_these`. False where there is no such stop.
+bool choose_seam(FacetedSurface& surface, FacetChain& chain, const std::vector<StopAtEnd>& not_these) {
+  const auto rank = [](Kind kind) { return kind == Kind::crossing ? 2 : kind == Kind::contact ? 1 : 0; };
+  std::size_t best = chain.stops.size();
+  std::pair<int, double> most;
+  for (std::size_t i = 0; i < chain.end_inner(); ++i) {
+    if (std::any_of(not_these.begin(), not_these.end(), [&](const StopAtEnd& end) { return end.stop == i; })) continue;
+    const double room = std::min(chain.before(i).length, chain.arcs[i].length);
+    if (!(room > ChainTolerances::together * surface.scale)) continue;
+    const std::pair<int, double> value{rank(chain.stops[i].kind), room};
+    if (best < chain.stops.size() && !(value > most)) continue;
+    best = i;
+    most = value;
+  }
+  if (best == chain.stops.size()) return false;
+  begin_at(chain, best);
+  return true;
 }
 
 /// Looks for what a settled chain breaks, and mends one thing.
@@ -100,25 +119,25 @@ ChainMove mend(FacetedSurface& surface, FacetChain& chain, const SlidStops& slid
     return {.changed = true};
   }
   ChainMove move = drop_turned_arc(chain);
-  for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.empty(); ++i) {
+  for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.fault == ChainFault::none; ++i) {
     move = keep_on_face(surface, chain, i, num_shifted);
   }
   return move;
 }
 
-/// What a settled chain breaks; empty: nothing.
-std::string broken(FacetedSurface& surface, const FacetChain& chain) {
-  for (std::size_t i = 1; i + 1 < chain.stops.size(); ++i) {
+/// What a settled chain breaks.
+ChainTrouble broken(FacetedSurface& surface, const FacetChain& chain) {
+  for (std::size_t i = chain.first_inner(); i < chain.end_inner(); ++i) {
     const ChainStop& stop = chain.stops[i];
-    const Point3 turn = chain.arcs[i - 1].last - chain.arcs[i].first;
+    const Point3 turn = chain.before(i).last - chain.arcs[i].first;
     if (stop.kind == Kind::crossing) {
       if (std::abs(turn.dot(surface.tangent(stop.edge, stop.x))) > ChainTolerances::angle) {
-        return "the tangents at an edge do not agree";
+        return {ChainFault::bent_crossing, stop.x};
       }
     } else if (stop.kind == Kind::contact) {
-      if (turn.norm() > kContactTangents) return "the path does not meet an edge that it follows along it";
+      if (turn.norm() > kContactTangents) return {ChainFault::bent_contact, stop.x};
     } else if (std::min(stop.left, stop.right) < std::numbers::pi - kCornerAngle) {
-      return "the path passes a corner that it could go round";
+      return {ChainFault::corner_with_room, stop.x};
     }
   }
   for (const ChainArc& arc : chain.arcs) {
@@ -126,7 +145,7 @@ std::string broken(FacetedSurface& surface, const FacetChain& chain) {
     for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const auto j = static_cast<Index>(u * static_cast<double>(arc.points.cols() - 1));
       if (pressed(surface, arc.edge, arc.points.col(j)) > kPressed / surface.scale) {
-        return "the path is not pressed against an edge that it follows";
+        return {ChainFault::not_pressed, arc.points.col(j)};
       }
     }
   }
@@ -142,34 +161,51 @@ void shorten_chain(FacetedSurface& surface, FacetChain& chain, std::vector<Facet
   int num_shifted = 0;
   bool followed = false;
   bool settled = false;
-  double least_curvature = 0;
   for (chain.rounds = 0; chain.rounds < kMostRounds; ++chain.rounds) {
     do {
       if (!tracer.trace(chain)) {
-        chain.why = kNoGeodesic;
+        chain.trouble = {ChainFault::no_arc, chain.stops[tracer.lost()].x};
+        return;
+      }
+      if (chain.closed && !choose_seam(surface, chain, {})) {
+        chain.trouble = {ChainFault::contracted, chain.stops.front().x};
         return;
       }
     } while (drop_empty_arcs(chain, together));
-    const SlidStops slid = slide_stops(surface, tracer, chain, context);
+    SlidStops slid = slide_stops(surface, tracer, chain, context);
     if (!slid.settled) {
-      chain.why = slid.why;
+      chain.trouble = slid.trouble;
       // Two crossings of an edge that the path is pressed against never settle: it follows the edge.
       if (followed || !follow_edges(surface, chain)) return;
       followed = true;
-      chain.why.clear();
+      chain.trouble = {};
       continue;
     }
-    least_curvature = slid.least_curvature;
-    ChainMove move = mend(surface, chain, slid, num_shifted, others);
-    if (!move.stuck.empty()) {
-      chain.why = std::move(move.stuck);
+    if (chain.closed) {
+      const std::vector<StopAtEnd> at_end = std::exchange(slid.at_end, {});
+      std::vector<Point3> places;
+      for (const StopAtEnd& end : at_end) places.push_back(chain.stops[end.stop].x);
+      if (!choose_seam(surface, chain, at_end)) {
+        chain.trouble = {ChainFault::contracted, chain.stops.front().x};
+        return;
+      }
+      for (std::size_t k = 0; k < places.size(); ++k) {
+        const auto there = std::find_if(chain.stops.begin() + 1, chain.stops.end() - 1,
+                                        [&](const ChainStop& stop) { return stop.x == places[k]; });
+        if (there == chain.stops.end() - 1) continue;
+        slid.at_end.push_back({static_cast<std::size_t>(there - chain.stops.begin()), at_end[k].condition});
+      }
+    }
+    const ChainMove move = mend(surface, chain, slid, num_shifted, others);
+    if (move.stuck.fault != ChainFault::none) {
+      chain.trouble = move.stuck;
       return;
     }
     settled = !move.changed;
     if (settled) break;
   }
   if (!settled) {
-    chain.why = "the row of faces along the path does not settle";
+    chain.trouble = {ChainFault::unsettled_row, chain.stops[chain.stops.size() / 2].x};
     return;
   }
   bool shortest = true;
@@ -179,10 +215,14 @@ void shorten_chain(FacetedSurface& surface, FacetChain& chain, std::vector<Facet
     chain.error += arc.error;
     shortest = shortest && arc.shortest;
   }
-  chain.why = broken(surface, chain);
-  if (!chain.why.empty()) return;
+  chain.trouble = broken(surface, chain);
+  if (chain.trouble.fault != ChainFault::none) return;
   chain.solved = true;
-  chain.locally_shortest = shortest && !(least_curvature < -kFalling / surface.scale);
+  const Vector rises = second_variation(surface, chain);
+  for (const ChainArc& arc : chain.arcs) chain.index += arc.face >= 0 ? arc.index : 0;
+  chain.index += static_cast<int>((rises.array() < -kFalling / surface.scale).count());
+  chain.neutral = static_cast<int>((rises.array().abs() <= kFalling / surface.scale).count());
+  chain.locally_shortest = shortest && chain.index == 0;
 }
 
 }  // namespace taut::detail

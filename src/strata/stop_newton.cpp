@@ -10,7 +10,8 @@
 // end (N across the arc, in the face), reduced length m12 and M12,
 //   L_aa = -T . kappa + a^2 M12 / m12,   L_bb = T . kappa + b^2 m12' / m12,   L_ab = -a b / m12,
 // so Newton's method has the exact, tridiagonal matrix. For crossings alone it is the Hessian of the length: steps go
-// down along each of its eigenvectors, and are halved until the length falls.
+// down along each of its eigenvectors, and are halved until the length falls. Of a chain that is to be stationary only,
+// be it no minimum, plain steps are taken.
 #include "strata/stop_newton.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -38,6 +39,8 @@ constexpr double kSettledContact = 1e-9;
 constexpr double kTolerable = 1e-6;
 /// A step that promises to shorten a chain by no more than this part is the last.
 constexpr double kLastGain = 1e-15;
+/// Eigenvalues smaller than this part of the largest are taken for as large.
+constexpr double kFlat = 1e-10;
 
 /// Newton's equations of the stops that move.
 class StopNewton {
@@ -46,6 +49,7 @@ class StopNewton {
       : s_(surface), tracer_(tracer), c_(chain), together_(ChainTolerances::together * surface.scale) {}
 
   [[nodiscard]] SlidStops run(const Context& context);
+  [[nodiscard]] Vector second_variation();
 
  private:
   /// One that moves.
@@ -63,6 +67,11 @@ class StopNewton {
     const auto found =
         std::find_if(movers_.begin(), movers_.end(), [&](const Mover& mover) { return mover.stop == stop; });
     return found == movers_.end() ? -1 : found - movers_.begin();
+  }
+  [[nodiscard]] std::size_t stop_before(std::size_t stop) const { return stop > 0 ? stop - 1 : c_.end_inner() - 1; }
+  /// The last stop of a closed chain is the first.
+  [[nodiscard]] std::size_t stop_after(std::size_t stop) const {
+    return c_.closed && stop + 1 == c_.end_inner() ? 0 : stop + 1;
   }
   void set_crossing(Index i);
   void set_contact(Index i);
@@ -90,24 +99,24 @@ class StopNewton {
 void StopNewton::set_crossing(Index i) {
   const std::size_t at = movers_[static_cast<std::size_t>(i)].stop;
   const ChainStop& stop = c_.stops[at];
-  const ChainArc& before = c_.arcs[at - 1];
+  const ChainArc& before = c_.before(at);
   const ChainArc& after = c_.arcs[at];
   const Point3 t = s_.tangent(stop.edge, stop.x);
   const Point3 kappa = s_.curvature(stop.edge, stop.x);
   residual_(i) = (before.last - after.first).dot(t);
   const double b = t.dot(normal(before.face, stop.x).cross(before.last));
   const double a = t.dot(normal(after.face, stop.x).cross(after.first));
-  matrix_(i, i) =
+  matrix_(i, i) +=
       before.last.dot(kappa) + b * b * before.slope / before.m12 - after.first.dot(kappa) + a * a * after.m / after.m12;
-  if (const Index j = mover_at(at - 1); j >= 0) {
-    const ChainStop& other = c_.stops[at - 1];
+  if (const Index j = mover_at(stop_before(at)); j >= 0) {
+    const ChainStop& other = c_.stops[stop_before(at)];
     const double a0 = s_.tangent(other.edge, other.x).dot(normal(before.face, other.x).cross(before.first));
-    matrix_(i, j) = -a0 * b / before.m12;
+    matrix_(i, j) -= a0 * b / before.m12;
   }
-  if (const Index j = mover_at(at + 1); j >= 0) {
-    const ChainStop& other = c_.stops[at + 1];
+  if (const Index j = mover_at(stop_after(at)); j >= 0) {
+    const ChainStop& other = c_.stops[stop_after(at)];
     const double b1 = s_.tangent(other.edge, other.x).dot(normal(after.face, other.x).cross(after.last));
-    matrix_(i, j) = -a * b1 / after.m12;
+    matrix_(i, j) -= a * b1 / after.m12;
   }
 }
 
@@ -115,8 +124,8 @@ void StopNewton::set_crossing(Index i) {
 void StopNewton::set_contact(Index i) {
   const std::size_t at = movers_[static_cast<std::size_t>(i)].stop;
   const ChainStop& stop = c_.stops[at];
-  const bool arrives = c_.arcs[at - 1].face >= 0;
-  const ChainArc& arc = arrives ? c_.arcs[at - 1] : c_.arcs[at];
+  const bool arrives = c_.before(at).face >= 0;
+  const ChainArc& arc = arrives ? c_.before(at) : c_.arcs[at];
   const Point3 t = s_.tangent(stop.edge, stop.x);
   const Point3 kappa = s_.curvature(stop.edge, stop.x);
   const Point3 tangent = arrives ? arc.last : arc.first;
@@ -128,13 +137,13 @@ void StopNewton::set_contact(Index i) {
   // conormal' = normal' x t + normal x kappa; along a nearly parallel tangent only the part along t counts.
   const double turn = tangent.dot(face_normal.cross(kappa));
   const double slope = arrives ? a * arc.slope / arc.m12 : -a * arc.m / arc.m12;
-  matrix_(i, i) = slope * side.dot(conormal) + turn;
-  const std::size_t next = arrives ? at - 1 : at + 1;
+  matrix_(i, i) += slope * side.dot(conormal) + turn;
+  const std::size_t next = arrives ? stop_before(at) : stop_after(at);
   if (const Index j = mover_at(next); j >= 0) {
     const ChainStop& other = c_.stops[next];
     const Point3 there = arrives ? arc.first : arc.last;
     const double a1 = s_.tangent(other.edge, other.x).dot(normal(arc.face, other.x).cross(there));
-    matrix_(i, j) = (arrives ? -a1 : a1) / arc.m12 * side.dot(conormal);
+    matrix_(i, j) += (arrives ? -a1 : a1) / arc.m12 * side.dot(conormal);
   }
 }
 
@@ -150,10 +159,10 @@ Vector StopNewton::solve(const std::vector<Index>& free) {
   const Eigen::MatrixXd symmetric = (matrix + matrix.transpose()) / 2;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
   const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  result_.least_curvature = eigen.eigenvalues()(0);
   Vector along = eigen.eigenvectors().transpose() * residual;
   for (Index i = 0; i < along.size(); ++i) {
-    along(i) = -along(i) / std::max(std::abs(eigen.eigenvalues()(i)), 1e-10 * largest + 1e-300);
+    const double steepness = std::max(std::abs(eigen.eigenvalues()(i)), kFlat * largest + 1e-300);
+    along(i) = -along(i) / (c_.stationary && eigen.eigenvalues()(i) < 0 ? -steepness : steepness);
   }
   step(free) = eigen.eigenvectors() * along;
   return step;
@@ -164,7 +173,7 @@ double StopNewton::longest_part(const Vector& step) const {
   double part = 1;
   for (std::size_t i = 0; i < movers_.size(); ++i) {
     const std::size_t at = movers_[i].stop;
-    const auto [shorter, longer] = std::minmax(c_.arcs[at - 1].length, c_.arcs[at].length);
+    const auto [shorter, longer] = std::minmax(c_.before(at).length, c_.arcs[at].length);
     double room = kBoldStep * longer;
     if (c_.stops[at].kind != Kind::contact) room = std::max(room, shorter);
     part = std::min(part, room / std::max(std::abs(step(static_cast<Index>(i))), 1e-300));
@@ -184,11 +193,12 @@ bool StopNewton::move(const Vector& step) {
     stop.x = walk.x;
     mover.out = walk.end;
     if (walk.end != 0) mover.condition = walk.condition;
-    c_.arcs[mover.stop - 1].done = false;
+    c_.before(mover.stop).done = false;
     c_.arcs[mover.stop].done = false;
   }
+  if (c_.closed) c_.stops.back() = c_.stops.front();
   if (!tracer_.trace(c_)) return false;
-  return contacts_ || c_.length < length + kLastGain * length;
+  return contacts_ || c_.stationary || c_.length < length + kLastGain * length;
 }
 
 /// A stop that has come to the end of its edge, where the chain has a corner already, goes into it. Else it would turn
@@ -198,28 +208,42 @@ bool StopNewton::fall_into_corners() {
   for (const Mover& mover : movers_) {
     if (mover.out == 0) continue;
     ChainStop& stop = c_.stops[mover.stop];
-    for (const std::size_t other : {mover.stop - 1, mover.stop + 1}) {
+    for (const std::size_t other : {stop_before(mover.stop), stop_after(mover.stop)}) {
       if (c_.stops[other].kind != Kind::corner) continue;
       if ((c_.stops[other].x - stop.x).norm() > ChainTolerances::at_corner * s_.scale) continue;
       stop.x = c_.stops[other].x;
-      c_.arcs[mover.stop - 1].done = c_.arcs[mover.stop].done = false;
+      c_.before(mover.stop).done = c_.arcs[mover.stop].done = false;
       fell = true;
     }
   }
+  if (c_.closed) c_.stops.back() = c_.stops.front();
   return fell && tracer_.trace(c_);
 }
 
+Vector StopNewton::second_variation() {
+  for (std::size_t i = c_.first_inner(); i < c_.end_inner(); ++i) {
+    if (c_.stops[i].kind == Kind::crossing) movers_.push_back({i});
+  }
+  const auto n = static_cast<Index>(movers_.size());
+  if (n == 0) return {};
+  residual_.setZero(n);
+  matrix_.setZero(n, n);
+  for (Index i = 0; i < n; ++i) set_crossing(i);
+  const Eigen::MatrixXd symmetric = (matrix_ + matrix_.transpose()) / 2;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
 SlidStops StopNewton::run(const Context& context) {
-  const auto fail = [&](const char* why) {
-    result_.why = why;
+  const auto fail = [&](ChainFault fault, std::size_t stop) {
+    result_.trouble = {fault, c_.stops[stop].x};
     return result_;
   };
-  for (std::size_t i = 0; i < c_.stops.size(); ++i) {
+  for (std::size_t i = c_.first_inner(); i < c_.end_inner(); ++i) {
     const Kind kind = c_.stops[i].kind;
     if (kind == Kind::crossing || kind == Kind::contact) movers_.push_back({i});
     contacts_ = contacts_ || kind == Kind::contact;
   }
-  if (!tracer_.trace(c_)) return fail("a geodesic on one face was not found");
+  if (!tracer_.trace(c_)) return fail(ChainFault::no_arc, tracer_.lost());
   if (movers_.empty()) {
     result_.settled = true;
     return result_;
@@ -241,6 +265,7 @@ SlidStops StopNewton::run(const Context& context) {
     matrix_.setZero(n, n);
     std::vector<Index> free;
     double off = 0;
+    std::size_t worst = movers_.front().stop;
     for (Index i = 0; i < n; ++i) {
       if (c_.stops[movers_[static_cast<std::size_t>(i)].stop].kind == Kind::crossing) {
         set_crossing(i);
@@ -249,10 +274,13 @@ SlidStops StopNewton::run(const Context& context) {
       }
       if (is_held(i)) continue;
       free.push_back(i);
-      off = std::max(off, std::abs(residual_(i)));
+      if (std::abs(residual_(i)) > off) {
+        off = std::abs(residual_(i));
+        worst = movers_[static_cast<std::size_t>(i)].stop;
+      }
     }
     const Vector step = solve(free);
-    if (!step.allFinite()) return fail("the crossings of the edges are not determined");
+    if (!step.allFinite()) return fail(ChainFault::undetermined, worst);
     const double predicted = std::abs(residual_.dot(step)) / 2;
     if (last || off <= kRounding) return settle(predicted);
     last = contacts_ ? off <= kSettledContact : predicted <= kLastGain * c_.length;
@@ -269,7 +297,7 @@ SlidStops StopNewton::run(const Context& context) {
     if (!moved) {
       c_ = before;
       movers_ = movers_before;
-      if (off > kTolerable) return fail("the crossings of the edges do not settle");
+      if (off > kTolerable) return fail(ChainFault::unsettled_stops, worst);
       return settle(predicted);
     }
     // An arc that has shrunk to nothing has no direction: it goes, before anything else is asked.
@@ -279,13 +307,20 @@ SlidStops StopNewton::run(const Context& context) {
       return result_;
     }
   }
-  return fail("the crossings of the edges do not settle");
+  return fail(ChainFault::unsettled_stops, movers_.front().stop);
 }
 
 }  // namespace
 
 SlidStops slide_stops(FacetedSurface& surface, ArcTracer& tracer, FacetChain& chain, const Context& context) {
   return StopNewton(surface, tracer, chain).run(context);
+}
+
+Vector second_variation(FacetedSurface& surface, const FacetChain& chain) {
+  FacetChain copy = chain;
+  const Context context;
+  ArcTracer tracer(surface, context);
+  return StopNewton(surface, tracer, copy).second_variation();
 }
 
 }  // namespace taut::detail

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
-#include <string>
 #include <vector>
 
 #include "strata/arc_tracer.hpp"
@@ -21,16 +19,18 @@ struct StopAtEnd {
 /// What came of sliding.
 struct SlidStops {
   bool settled = false;
-  std::string why;  ///< it did not settle
+  ChainTrouble trouble;  ///< why it did not
   std::vector<StopAtEnd> at_end;
-  /// Least eigenvalue of the length's second derivative, 1 / model units; infinite where no crossing moves, or the path
-  /// follows an edge.
-  double least_curvature = std::numeric_limits<double>::infinity();
 };
 
 /// Moves the crossings and contacts of a chain along their edges until it is stationary, by Newton's method with exact
 /// second derivatives. Ends early where an arc has shrunk to nothing.
 [[nodiscard]] SlidStops slide_stops(FacetedSurface& surface, ArcTracer& tracer, FacetChain& chain,
                                     const Context& context);
+
+/// Eigenvalues of the second derivative of a settled chain's length by the places of its crossings, 1 / model units,
+/// least first. Where the chain follows an edge, its contacts change the length by the third order only, and do not
+/// move the crossings: they count as fixed.
+[[nodiscard]] Vector second_variation(FacetedSurface& surface, const FacetChain& chain);
 
 }  // namespace taut::detail
