@@ -84,9 +84,9 @@ std::string on_obstacle(const PathResult& result) {
           near(obstacle.place), obstacle.size * 180 / std::numbers::pi, result.cell);
     case Obstacle::Kind::no_way:
       return fmt::format(
-          "no path was found on cells down to {:.3g}, nor by walks from both ends; that there is none is not proved: "
-          "a smaller box around both points may help",
-          result.cell);
+          "no path was found on cells down to {:.3g}{}; that there is none is not proved: a smaller box around both "
+          "points may help",
+          result.cell, walked(result) ? ", nor by walks from both ends" : "");
     case Obstacle::Kind::cells_spent: return "no path was found: " + cells_spent(result);
     case Obstacle::Kind::no_geodesic: {
       const Index d = obstacle.place.size();

@@ -20,7 +20,8 @@
 //           points lie apart in it, and the surface     times as wide                       of that search
 //           goes on
 //   border  any doubt, or the path leaves the domain    ways over a graph of the one face   start_failed, budget_spent
-//                                                       and its border
+//                                                       and its border; on fits, the way
+//                                                       over cells that stays inside        rivals_not_sought
 // clang-format on
 //
 // Where there are two ways to the same end the cheaper one comes first: a fan and walks before finer cells that cost
@@ -110,9 +111,13 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
       // On which side of a spike a way begins no landmark tells.
       const bool past_spikes = now.tried(Rung::table) && !now.marched && now.doubts.has(Doubt::sharp_bends);
       const bool wanted = !now.best || now.doubts.has(Doubt::start_failed) || past_spikes;
-      return levels().exist() && now.level < num_levels() && wanted && is_affordable(now);
+      // Finer cells of a fit cost more than to look along its border.
+      const bool by_border = now.best && surface_.samples() != nullptr && can_help(Rung::border, now);
+      return levels().exist() && now.level < num_levels() && wanted && !by_border && is_affordable(now);
     }
-    case Rung::walks: return !now.best && !now.tried(rung) && (scope_ != Scope::window || !levels().exist());
+    case Rung::walks:
+      return !now.best && !now.tried(rung) && (scope_ != Scope::window || !levels().exist()) &&
+             !can_help(Rung::border, now);
     case Rung::closer:
       return scope_ != Scope::part && !marches_between_centres(options_) && now.has_path() && !now.tried(rung) &&
              now.doubts.has_any({Doubt::coarse_cells, Doubt::sharp_bends}) && has_smaller_part(*now.best);
@@ -121,9 +126,12 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
              (now.has_path() ? !have_room(*now.best, now.doublings) : now.is_apart());
     case Rung::fan: return fan_can_help(now);
     case Rung::border: {
-      // A graph of a fit takes seconds: only where the path leaves the samples.
-      const bool doubted = now.has_path() && now.doubts.any() && surface_.samples() == nullptr;
-      const bool met = now.best && (now.best->status == Status::left_domain || doubted);
+      // On fits, where a way that promised to be shorter may have left the samples, and where nothing else came of it.
+      const bool fitted = surface_.samples() != nullptr;
+      const bool doubted = now.has_path() && (fitted ? now.doubts.has(Doubt::start_failed) : now.doubts.any());
+      const bool lost = fitted && (now.best ? now.best->status != Status::ok && !now.is_apart()
+                                            : now.blocked && !can_help(Rung::fields, now));
+      const bool met = (now.best && now.best->status == Status::left_domain) || doubted || lost;
       return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
     }
   }
@@ -183,11 +191,14 @@ bool PathSearch::fan_can_help(const Inquiry& now) const {
   const bool smooth = surface_.dim() == 3 && surface_.codim() == 1 && !kinked_;
   const bool paper = marches_between_centres(options_) || options_.method == CorrectionMethod::grid;
   if (scope_ != Scope::whole || !smooth || paper || now.tried(Rung::fan)) return false;
+  const bool bordered = surface_.samples() != nullptr && surface_.domain() != nullptr;
   if (!now.has_path()) {
-    return !now.best && now.blocked && now.next_cells > kLadderRules.most_cells_before_fan;
+    return !bordered && !now.best && now.blocked && now.next_cells > kLadderRules.most_cells_before_fan;
   }
   const bool may_be_beyond = levels().endless() && !have_room(*now.best, 0);
-  return (now.doubts.any() || may_be_beyond) && !can_help(Rung::closer, now);
+  // On a fit with a border that comes first, and of paths along it a fan knows nothing.
+  const bool by_border = bordered && (now.tried(Rung::border) || can_help(Rung::border, now));
+  return (now.doubts.any() || may_be_beyond) && !by_border && !can_help(Rung::closer, now);
 }
 
 /// Are the cells too coarse, as a whole or along this path, for a way found on them to be surely the shortest.

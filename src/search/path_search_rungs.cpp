@@ -12,6 +12,7 @@
 #include "curve/polyline.hpp"
 #include "fan/fan_answers.hpp"
 #include "fan/geodesic_fan.hpp"
+#include "search/border_search.hpp"
 #include "search/ladder_rules.hpp"
 #include "search/path_search.hpp"
 #include "taut/cells/find_cells.hpp"
@@ -280,6 +281,7 @@ void PathSearch::add_ray(const FanHit& way, const Inquiry& now, Starts& starts) 
 
 /// Where a domain cuts the surface the shortest path may run along the cut: it is the shorter one, or the only one.
 void PathSearch::go_along_border(Inquiry& now) const {
+  if (surface_.samples() != nullptr) return go_along_samples(now);
   std::optional<PathResult> other = faces_.find(now.from(), now.to(), levels().extent());
   if (!other) return;
   now.add_effort(*other);
@@ -292,6 +294,38 @@ void PathSearch::go_along_border(Inquiry& now) const {
   if (other->status != Status::ok || (now.has_path() && now.best->length <= other->length)) return;
   now.doubts = other->doubts;
   now.best = std::move(other);
+}
+
+/// The same where the samples of a fit end, on cells of one size after the other. Where no step of any leads on, the
+/// points are not joined as far as such steps can tell.
+void PathSearch::go_along_samples(Inquiry& now) const {
+  if (surface_.dim() != 3 || surface_.codim() != 1 || !levels().exist() || levels().lazy()) return;
+  if (marches_between_centres(options_) || options_.method != CorrectionMethod::newton) return;
+  for (int level = 0; level < num_levels(); ++level) {
+    std::shared_ptr<SurfaceCells> cells;
+    try {
+      cells = finder_.ground(level, chord(now.from(), now.to())).cells;
+    } catch (const OutOfMemory&) {
+      return;
+    }
+    BorderAnswer answer = search_along_border(surface_, options_, *cells, now.from(), now.to(), context_);
+    now.add_effort(answer.result);
+    const bool last = 4 * cells->num_cells() > kLadderRules.most_fitted_cells;
+    if (answer.kind == BorderAnswer::Kind::path) {
+      if (now.has_path() && now.best->length <= answer.result.length) return;
+      now.doubts = answer.result.doubts;
+      now.best = std::move(answer.result);
+      return;
+    }
+    if (answer.kind == BorderAnswer::Kind::none && !now.has_path()) {
+      const bool apart = finder_.apart(*cells, level, now.from(), now.to());
+      if (apart || last) {
+        now.give_up(Status::disconnected, apart ? Obstacle::Kind::apart : Obstacle::Kind::no_way);
+        return;
+      }
+    }
+    if (last) return;
+  }
 }
 
 }  // namespace taut::detail

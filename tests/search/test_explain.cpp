@@ -100,9 +100,10 @@ TEST(Explain, ObstaclesInWords) {
       stopped({Kind::crease, place, std::numbers::pi / 2}),
       "the surface is not smooth between the two points: near (0, 0.5, 1) its normal turns by 90 degrees within a "
       "cell of 0.25; geodesics over a crease or through a singular point are not supported");
-  EXPECT_EQ(stopped({Kind::no_way}),
-            "no path was found on cells down to 0.25, nor by walks from both ends; that there is none is not proved: a "
-            "smaller box around both points may help");
+  EXPECT_EQ(
+      stopped({Kind::no_way}),
+      "no path was found on cells down to 0.25; that there is none is not proved: a smaller box around both points "
+      "may help");
   EXPECT_EQ(stopped({Kind::cells_spent}),
             "no path was found: as many cells of 0.25 as may grow do not lead from one end to the other");
   EXPECT_EQ(stopped({Kind::jumped, {}, 1.5}), "the corrected path is longer (2) than the one on the cells (1.5)");

@@ -151,19 +151,46 @@ TEST(RbfFunction, ThreadsChangeNothing) {
 
 // --- the domain -----------------------------------------------------------------------------------------------------
 
-TEST(RbfDomain, IsTheDistanceToTheNearestSample) {
+TEST(RbfDomain, HoldsTheBallsAroundItsSamplesAndLittleMore) {
   const PointCloud cloud = test::sphere_cloud(3, 200);
   const RbfModel model = fit_rbf(cloud);
   const Surface surface = make_surface(std::make_shared<RbfModel>(model));
   ASSERT_NE(surface.domain(), nullptr);
   const Surface domain(std::shared_ptr<const ImplicitFunction>(std::shared_ptr<void>(), surface.domain()));
-  const Points x = random_points(3, 50, 2, 8);
+  const Points x = random_points(3, 500, 2, 8);
   for (Index j = 0; j < x.cols(); ++j) {
-    Index nearest = 0;
-    const double distance = (cloud.points.colwise() - x.col(j)).colwise().norm().minCoeff(&nearest);
-    EXPECT_NEAR(domain.value(x.col(j))(0), model.support_radius - distance, 1e-14);
-    const Vector gradient = (cloud.points.col(nearest) - x.col(j)) / distance;
-    EXPECT_LT((domain.jacobian(x.col(j)) - gradient).norm(), 1e-13);
+    const double distance = (cloud.points.colwise() - x.col(j)).colwise().norm().minCoeff();
+    const double value = domain.value(x.col(j))(0);
+    EXPECT_TRUE(distance > model.support_radius || value > 0) << distance;
+    EXPECT_TRUE(distance < 1.3 * model.support_radius || value < 0) << distance;
+  }
+  EXPECT_TRUE(std::isnan(domain.value(Vector::Constant(3, std::nan("")))(0)));
+}
+
+/// A border that paths can follow has a curvature.
+TEST(RbfDomain, IsSmoothAtItsBorder) {
+  const Surface surface = fitted(test::sphere_cloud(3, 200));
+  const Surface domain(std::shared_ptr<const ImplicitFunction>(std::shared_ptr<void>(), surface.domain()));
+  const Points directions = random_points(3, 40, 1, 31);
+  const Vector one = Vector::Ones(1);
+  for (Index j = 0; j < directions.cols(); ++j) {
+    Vector inside = directions.col(j).normalized();
+    Vector outside = 3 * inside;
+    for (int k = 0; k < 60; ++k) {
+      const Vector middle = (inside + outside) / 2;
+      (domain.value(middle)(0) > 0 ? inside : outside) = middle;
+    }
+    const double h = 1e-5;
+    const Vector gradient = domain.jacobian(inside);
+    const Eigen::MatrixXd hessian = domain.hessian(inside, one);
+    EXPECT_GT(gradient.norm(), 0.3);
+    for (Index a = 0; a < 3; ++a) {
+      const Vector step = h * Vector::Unit(3, a);
+      const double slope = (domain.value(inside + step)(0) - domain.value(inside - step)(0)) / (2 * h);
+      EXPECT_NEAR(slope, gradient(a), 1e-7);
+      const Vector bend = (domain.jacobian(inside + step) - domain.jacobian(inside - step)) / (2 * h);
+      EXPECT_LT((bend - hessian.col(a)).norm(), 1e-5 * (1 + hessian.norm()));
+    }
   }
 }
 
