@@ -81,7 +81,8 @@ Run add_fit_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("fit", "fit a surface to a point cloud and keep it in a file");
   command
       .add_option("CLOUD", arguments->cloud,
-                  "points: .ply .obj .off .stl .xyz .pts .asc .txt .pwn .pcd .csv .tsv .npy, or one of them as .gz")
+                  "points: .ply .obj .off .stl .xyz .pts .asc .txt .pwn .pcd .las .vtk .vtp .vtu .csv .tsv .npy, or a "
+                  "text format as .gz")
       ->required();
   command.add_option("-o,--out", arguments->out, "the model, a .taut file")->required();
   command.add_option("--dim", arguments->dim, "how many columns of a table without a header are coordinates")

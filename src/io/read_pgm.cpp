@@ -1,6 +1,7 @@
 // Netpbm's grey pictures: "P5" with raw numbers of one byte, or two (the greater first) where the largest value needs
 // them; "P2" with numbers as text. The header is words with remarks from # to the end of a line, and one blank.
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 
@@ -88,6 +89,12 @@ HeightField read_pgm(const InputFile& file) {
     for (std::size_t i = 0; i < count; ++i) {
       field.heights[i] = width == 1 ? p[i] : 256.0 * p[2 * i] + p[2 * i + 1];
     }
+  }
+  const auto beyond = std::ranges::find_if(field.heights, [&](double h) { return h > static_cast<double>(largest); });
+  if (beyond != field.heights.end()) {
+    file.fail("pixel " + std::to_string(beyond - field.heights.begin()) + " is " +
+              std::to_string(static_cast<std::int64_t>(*beyond)) + ", but the header says that the largest value is " +
+              std::to_string(largest) + "; the file is damaged");
   }
   turn_rows(field);
   return field;

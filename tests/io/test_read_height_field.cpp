@@ -80,6 +80,7 @@ TEST(ReadHeightField, MistakesAreNamed) {
   EXPECT_THAT(error_of("a.pgm", "P2 2 2 255\n1 2 3 "), HasSubstr("pixels"));
   EXPECT_THAT(error_of("a.pgm", "P5 2 2 70000\n1234"), HasSubstr("largest value"));
   EXPECT_THAT(error_of("a.pgm", "P5 0 2 7\n1234"), HasSubstr("0 x 2"));
+  EXPECT_THAT(error_of("a.pgm", "P2 2 2 7\n1 2 8 4"), HasSubstr("pixel 2 is 8, but the header says"));
   EXPECT_THAT(error_of("a.tif", "II"), HasSubstr(".pgm, .png and .npy"));
 }
 
