@@ -28,7 +28,11 @@ CornerTurn leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t 
   const ChainArc after = chain.arcs[i];
   const std::optional<Star> found = surface.star(stop.x, 1e-8 * surface.scale);
   stop.left = stop.right = kFar;
-  if (!found) return {};
+  if (!found) {
+    // Not known to be a corner that may be passed.
+    stop.left = stop.right = 0;
+    return {};
+  }
   const Star& star = *found;
   const std::size_t n = star.wedges.size();
   // Where a direction lies: the wedge and the angle in it. Directions along rays are in both wedges.
@@ -75,7 +79,10 @@ CornerTurn leave_corner(FacetedSurface& surface, FacetChain& chain, std::size_t 
   };
   const Place back = locate(-before.last, before.face);
   const Place ahead = locate(after.first, after.face);
-  if (back.off > 0.1 || ahead.off > 0.1) return {};
+  if (back.off > 0.1 || ahead.off > 0.1) {
+    stop.left = stop.right = 0;
+    return {};
+  }
   struct Ray {
     double angle;  // from the start of the sweep
     int edge;

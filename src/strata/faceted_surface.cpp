@@ -484,6 +484,19 @@ int FacetedSurface::edge_of(int a, int b, int condition) {
   return at->second;
 }
 
+/// A kink of a branch that is not taken bounds no face, though it may vanish along an edge, or in a face's own plane:
+/// that of max(1-x, x-3) in x = 2. Flipping it changes neither the face nor another condition.
+bool FacetedSurface::matters(int kink, const FormulaKinks::Sides& sides, const std::vector<int>& zero) {
+  if (kink >= first_in_domain_ || zero.size() < 2) return true;
+  FormulaKinks::Sides flipped = sides;
+  auto& side = flipped[static_cast<std::size_t>(kink)];
+  side = static_cast<std::int8_t>(-side);
+  if (face_of(flipped) != face_of(sides)) return true;
+  return std::any_of(zero.begin(), zero.end(), [&](int other) {
+    return other != kink && smooth_condition(other, flipped) != smooth_condition(other, sides);
+  });
+}
+
 std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
   Eigen::VectorXd value;
   Eigen::Matrix<double, 3, Eigen::Dynamic> gradient;
@@ -524,6 +537,7 @@ std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
     double width = kTwoPi;
     bool empty = false;
     for (const int z : zero) {
+      if (!matters(z, other, zero)) continue;
       const int smooth = smooth_condition(z, other);
       Point3 g;
       (void)condition(smooth, x, g);

@@ -139,6 +139,8 @@ class FacetedSurface {
   const FormulaKinks::Sides& sides_at(const Point3& x);
   /// Kinks of the domain matter only next to its border.
   void drop_idle_kinks(std::vector<int>& conditions) const;
+  /// Does a kink that vanishes at a point, with all of `zero`, bound the face of these sides there.
+  [[nodiscard]] bool matters(int kink, const FormulaKinks::Sides& sides, const std::vector<int>& zero);
   [[nodiscard]] int edge_of(int a, int b, int condition);
   void evaluate_conditions(const Point3& x, Eigen::VectorXd& value, Eigen::Matrix<double, 3, Eigen::Dynamic>* gradient);
 

@@ -120,5 +120,18 @@ TEST(EdgeTruth, FilletsTendToSharpEdges) {
   }
 }
 
+// Of 2026-12-01: the kink of max(1-x, x-3) at x = 2, in a box that plays no part there, hid all edges of the upper
+// riser, and 4.35 was returned. Up the first riser, then over faces whose unfolding gives the truth (exact polyhedral
+// distances of the mesh).
+TEST(EdgeTruth, StairsOfBoxesWithKinksInTheirFaces) {
+  const std::string stairs = "min(max(-x,x-3,-y,y-2,-z,z-1),max(1-x,x-3,-y,y-2,-z,z-2),max(2-x,x-3,-y,y-2,-z,z-3))";
+  expect_length(
+      path(stairs, {}, {0.16400583037382271, 2, 0.21166120042392308}, {2.4248672554128707, 1.2645479331308882, 3}),
+      4.166760988659469);
+  expect_length(
+      path(stairs, {}, {2.5996484466484011, 0.056989597463230561, 3}, {0.4294313919467726, 2, 0.776168119040611}),
+      4.539667176009818);
+}
+
 }  // namespace
 }  // namespace taut
