@@ -15,7 +15,6 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/bezier.hpp"
 #include "taut/query/surface_mesh.hpp"
@@ -110,7 +109,7 @@ ExitCode run(CurveArguments arguments) {
   if (arguments.files.has_picture() && (surface.dim() != 3 || surface.codim() != 1)) {
     throw UsageError("pictures of curves show surfaces in space; write .csv or .json here");
   }
-  const Points controls = read_points(file_or_stdin(arguments.bezier), surface.dim(), context);
+  const Points controls = read_point_list(arguments.bezier, surface, context);
   const Curve curve = draw(arguments, surface, controls, context);
   nlohmann::ordered_json json;
   json["command"] = "curve";

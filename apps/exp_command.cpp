@@ -140,7 +140,7 @@ std::string ray_csv(const RayResult& result, Index d, double asked, const std::s
 ExitCode run_rays(const ExpArguments& arguments, const Surface& surface, const Context& context) {
   constexpr Index kAtOnce = 4096;
   const Index d = surface.dim();
-  CsvRows rows = open_rows(arguments.rays);
+  CsvRows rows = open_rows(arguments.rays, surface);
   BatchErrors errors(arguments.rays == "-" ? "standard input" : arguments.rays);
   ExponentialOptions options = arguments.options;
   options.conjugate = false;

@@ -21,7 +21,6 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/query/field.hpp"
@@ -72,7 +71,7 @@ DistanceSolver make_solver(const FieldArguments& arguments, const Surface& surfa
   if (arguments.from_curves.empty()) return {surface, sources, {}, arguments.distance_options(surface, paths), context};
   std::vector<Points> curves;
   for (const std::string& file : arguments.from_curves) {
-    curves.push_back(read_points(file_or_stdin(file), surface.dim(), context));
+    curves.push_back(read_point_list(file, surface, context));
     if (curves.back().cols() < 2) throw InvalidArgument(file + ": a curve takes two points or more");
   }
   DistanceSolver solver(surface, curves.front().col(0), {}, arguments.distance_options(surface, false), context);
@@ -103,7 +102,7 @@ std::string header_line(Index dim, bool directions, bool curves) {
 /// Exact distances at given points, a line each.
 ExitCode distances_at(const FieldArguments& arguments, const Surface& surface, const Points& sources,
                       const Context& context) {
-  const Points at = read_points(file_or_stdin(arguments.at), surface.dim(), context);
+  const Points at = read_point_list(arguments.at, surface, context);
   DistanceSolver solver = make_solver(arguments, surface, sources, true, context);
   const bool curves = !arguments.from_curves.empty();
   const Distances found = solver.at(at);
@@ -179,7 +178,10 @@ Index make_exact(DistanceSolver& solver, SurfaceMesh& mesh, bool keep_marched) {
 }
 
 ExitCode run(FieldArguments arguments, const CLI::App& command) {
-  if (arguments.at.empty() == arguments.files.out.empty()) {
+  if (!arguments.at.empty() && !arguments.files.out.empty()) {
+    throw UsageError("--at writes its lines to stdout, as in > distances.csv; --out is for the whole surface");
+  }
+  if (arguments.at.empty() && arguments.files.out.empty()) {
     throw UsageError(
         "give --out FILE for the whole surface, or --at POINTS.csv for given points (see taut field --help)");
   }

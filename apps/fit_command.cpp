@@ -1,6 +1,7 @@
 // taut fit: a point cloud becomes a surface file that the other commands read at once.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -15,6 +16,7 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
+#include "taut/io/read_point_cloud.hpp"
 #include "taut/io/read_surface.hpp"
 
 namespace taut::app {
@@ -81,8 +83,7 @@ Run add_fit_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("fit", "fit a surface to a point cloud and keep it in a file");
   command
       .add_option("CLOUD", arguments->cloud,
-                  "points: .ply .obj .off .stl .xyz .pts .asc .txt .pwn .pcd .las .vtk .vtp .vtu .csv .tsv .npy, or a "
-                  "text format as .gz")
+                  fmt::format("points or a mesh: {}, or one of them as .gz", fmt::join(point_cloud_extensions(), " ")))
       ->required();
   command.add_option("-o,--out", arguments->out, "the model, a .taut file")->required();
   command.add_option("--dim", arguments->dim, "how many columns of a table without a header are coordinates")

@@ -104,7 +104,8 @@ FormulaOptions formula_options(const SurfaceArguments& arguments, const std::str
       throw UsageError("--set " + given + ": write NAME=VALUE, as in --set R=1.5");
     }
     const std::string name = given.substr(0, equals);
-    const Vector value = parse_numbers(given.substr(equals + 1), "--set " + name);
+    const Vector value =
+        parse_numbers(given.substr(equals + 1), "--set " + name, "write one number, as in --set R=1.5");
     if (value.size() != 1) throw UsageError("--set " + given + ": give one value");
     options.parameters[name] = value(0);
     if (!text.empty() && !uses(all_text, name)) {

@@ -203,8 +203,9 @@ bool names_a_file(const std::string& surface) {
   // A path that does not exist must be called that, rather than be read as a formula with odd variables.
   const std::string extension = std::filesystem::path(surface).extension().string();
   const bool looks_like_one =
-      extension.size() >= 2 && extension.size() <= 6 && std::isalpha(static_cast<unsigned char>(extension[1])) != 0 &&
-      std::all_of(extension.begin() + 1, extension.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+      extension == ".safetensors" ||
+      (extension.size() >= 2 && extension.size() <= 6 && std::isalpha(static_cast<unsigned char>(extension[1])) != 0 &&
+       std::all_of(extension.begin() + 1, extension.end(), [](unsigned char c) { return std::isalnum(c) != 0; }));
   return looks_like_one && surface.find_first_of("=^*+(),;") == std::string::npos;
 }
 

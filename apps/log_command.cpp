@@ -149,7 +149,7 @@ ExitCode log_of_one(const LogArguments& arguments, const Surface& surface, const
 /// A line a target: what `taut exp --rays` takes behind the start, and the error.
 ExitCode log_of_many(const LogArguments& arguments, const Surface& surface, const Context& context) {
   const Index d = surface.dim();
-  CsvRows rows = open_rows(arguments.to_file);
+  CsvRows rows = open_rows(arguments.to_file, surface);
   const NumberRows targets =
       read_number_rows(rows, d, std::numeric_limits<Index>::max(), fmt::format("a point takes {}", d));
   // Directions are some hundred times less exact than lengths.

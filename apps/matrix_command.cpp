@@ -18,7 +18,6 @@
 #include "report.hpp"
 #include "surface_request.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/query/distance_matrix.hpp"
 #include "terminal.hpp"
 #include "timer.hpp"
@@ -77,9 +76,8 @@ ExitCode run(MatrixArguments arguments) {
   const Timer timer;
   const Context context = terminal_context(arguments.geodesic.common.terminal);
   const Surface surface = arguments.geodesic.load(context);
-  const Points points = read_points(file_or_stdin(arguments.points), surface.dim(), context);
-  const Points targets =
-      square ? Points(surface.dim(), 0) : read_points(file_or_stdin(arguments.targets), surface.dim(), context);
+  const Points points = read_point_list(arguments.points, surface, context);
+  const Points targets = square ? Points(surface.dim(), 0) : read_point_list(arguments.targets, surface, context);
   MatrixOptions options{.distance = arguments.geodesic.distance_options(), .k_nearest = arguments.k_nearest};
   options.distance.max_distance = arguments.max_distance;
   DistanceMatrix matrix = square ? DistanceMatrix(surface, points, options, context)
@@ -128,7 +126,7 @@ Run add_matrix_command(CLI::App& app) {
   arguments->geodesic.add_to(command);
   command.add_option("--points", arguments->points, "points, one a line, - = stdin")->required();
   command.add_option("--targets", arguments->targets, "from each point to each of these instead of all pairs");
-  command.add_option("--out", arguments->out, "the matrix: .npy or .csv; after a kill the same command goes on")
+  command.add_option("-o,--out", arguments->out, "the matrix: .npy or .csv; after a kill the same command goes on")
       ->required();
   command
       .add_option("--k-nearest", arguments->k_nearest, "only the so many nearest of each point: row,column,distance")

@@ -12,7 +12,6 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/query/point_sets.hpp"
 #include "terminal.hpp"
 #include "vector_text.hpp"
@@ -30,7 +29,7 @@ struct MeanArguments {
 ExitCode run(MeanArguments arguments) {
   const Context context = terminal_context(arguments.geodesic.common.terminal);
   const Surface surface = arguments.geodesic.load(context);
-  const Points points = read_points(file_or_stdin(arguments.points), surface.dim(), context);
+  const Points points = read_point_list(arguments.points, surface, context);
   const Vector weights = arguments.weights.empty() ? Vector() : parse_numbers(arguments.weights, "--weights");
   KarcherMeanOptions options;
   options.distance = arguments.geodesic.distance_options();

@@ -256,6 +256,12 @@ void FileArguments::check(OutputKind kind) const {
     const bool known = kind == OutputKind::path ? std::ranges::count(kPathOutputs, extension) > 0
                                                 : std::ranges::count(kMeshOutputs, extension) > 0;
     if (!known) throw UsageError(fmt::format("--out {}: write one of {}", file, known_outputs(kind)));
+    // Two files in one word: nobody wants the second as part of the first one's name.
+    const std::string first = file.substr(0, file.find(','));
+    if (first.size() < file.size() && !std::filesystem::path(first).extension().empty()) {
+      throw UsageError(fmt::format("--out {}: one file a time; repeat it: --out {} --out {}", file, first,
+                                   file.substr(first.size() + 1)));
+    }
     const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored)) {
@@ -333,7 +339,9 @@ FieldOptions field_options(const PathOptions& options) {
 }
 
 std::string picture_title(const std::string& surface) {
-  std::string title = names_a_file(surface) ? std::filesystem::path(surface).filename().string() : surface;
+  const std::string name = surface.starts_with('@') ? surface.substr(1) : surface;  // @FILE holds a formula
+  std::string title =
+      name == surface && !names_a_file(surface) ? surface : std::filesystem::path(name).filename().string();
   if (title.size() > kLongestTitle) title = title.substr(0, kLongestTitle) + "...";
   return title;
 }

@@ -30,6 +30,12 @@ PairsFile::PairsFile(std::string name, const Context& context) : name_(std::move
   version_ = fmt::format("{} bytes, {}", size, time);
 }
 
+CsvRows PairsFile::rows(const Surface& surface) const {
+  CsvRows rows(path_, name_);
+  if (surface.samples() != nullptr) rows.set_samples(surface.samples()->points);
+  return rows;
+}
+
 void PairsFile::Remover::operator()(std::filesystem::path* file) const {
   std::error_code ignored;
   std::filesystem::remove(*file, ignored);

@@ -6,6 +6,7 @@
 
 #include "taut/core/context.hpp"
 #include "taut/io/read_points.hpp"
+#include "taut/surface/surface.hpp"
 
 namespace taut::app {
 
@@ -18,8 +19,8 @@ class PairsFile {
 
   /// What messages call it.
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// From its first line. Throws IoError.
-  [[nodiscard]] CsvRows rows() const { return CsvRows(path_, name_); }
+  /// From its first line; @17 stands for a sample of the surface, which must outlive them. Throws IoError.
+  [[nodiscard]] CsvRows rows(const Surface& surface) const;
   /// Changes when the content does: size and time of a file, size and hash of what came through a pipe.
   [[nodiscard]] const std::string& version() const { return version_; }
 

@@ -114,7 +114,7 @@ Run add_paper_command(CLI::App& app) {
   auto arguments = std::make_shared<PaperArguments>();
   CLI::App& command = *app.add_subcommand("paper", "the figures and tables of Taut's paper, measured: a report");
   command.add_option("PART", arguments->parts, "what to measure: " + part_names())->capture_default_str();
-  command.add_option("--out", arguments->out, "folder for report.html, figures/ and data/; made if it is not there")
+  command.add_option("-o,--out", arguments->out, "folder for report.html, figures/ and data/; made if it is not there")
       ->required();
   command.add_option("--data", arguments->data,
                      "folder with real models: hand_gel.obj, eight_genus2.off or kitten.xyz, feline_genus2.obj, "

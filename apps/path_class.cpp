@@ -8,7 +8,6 @@
 #include "input_files.hpp"
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/query/path.hpp"
 #include "taut/surface/projection.hpp"
 
@@ -44,7 +43,7 @@ auto naming(const std::string& file, const Solve& solve) {
 
 PathResult shorten_polyline(const PolylineRequest& request, const Surface& surface, const PathOptions& options,
                             const Context& context) {
-  const Points polyline = read_points(file_or_stdin(request.file), surface.dim(), context);
+  const Points polyline = read_point_list(request.file, surface, context);
   const double extent = (polyline.rowwise().maxCoeff() - polyline.rowwise().minCoeff()).maxCoeff();
   check_end(request.from, "--from", polyline.col(0), extent, surface);
   check_end(request.to, "--to", polyline.rightCols(1), extent, surface);
@@ -53,7 +52,7 @@ PathResult shorten_polyline(const PolylineRequest& request, const Surface& surfa
 
 ClosedGeodesic close_polyline(const std::string& file, const Surface& surface, const PathOptions& options,
                               const Context& context) {
-  const Points polyline = read_points(file_or_stdin(file), surface.dim(), context);
+  const Points polyline = read_point_list(file, surface, context);
   return naming(file, [&] { return closed_geodesic(surface, polyline, options, context); });
 }
 

@@ -32,12 +32,13 @@ struct Survey {
   Points corners;  // d x 2
 };
 
-Survey survey(const PairsFile& file, Index d) {
+Survey survey(const PairsFile& file, const Surface& surface) {
+  const Index d = surface.dim();
   Survey found;
   found.corners.resize(d, 2);
   found.corners.col(0).setConstant(std::numeric_limits<double>::infinity());
   found.corners.col(1).setConstant(-std::numeric_limits<double>::infinity());
-  CsvRows rows = file.rows();
+  CsvRows rows = file.rows(surface);
   for (CsvRow row; rows.next(row); ++found.count) {
     if (!row.problem.empty() || static_cast<Index>(row.values.size()) != 2 * d) continue;
     const Eigen::Map<const Points> ends(row.values.data(), d, 2);
@@ -64,14 +65,14 @@ std::string request_line(const PairsRequest& request, const PairsFile& file) {
 ExitCode answer_pairs(const PairsRequest& request, const Surface& surface, const Context& context) {
   const Index d = surface.dim();
   const PairsFile file(request.file, context);
-  const Survey found = survey(file, d);
+  const Survey found = survey(file, surface);
   const std::string header = request.header ? path_csv_header(request.columns) : "";
   const std::unique_ptr<BatchOutput> output =
       request.out ? std::make_unique<BatchOutput>(*request.out, request_line(request, file), header)
                   : std::make_unique<BatchOutput>(header);
   BatchErrors errors(file.name());
   const bool ok_before = !output->some_failed();
-  CsvRows rows = file.rows();
+  CsvRows rows = file.rows(surface);
   Index done = 0;
   const auto num_earlier = static_cast<Index>(output->num_done());
   for (CsvRow row; done < num_earlier && rows.next(row);) ++done;

@@ -26,7 +26,7 @@ ExitCode answer_sources(const SourcesRequest& request, const DeliveryArguments& 
   for (Index s = 0; s < num_sources; ++s) {
     sources.col(s) = parse_point(request.from[static_cast<std::size_t>(s)], "--from", surface);
   }
-  CsvRows rows = open_rows(request.to_file);
+  CsvRows rows = open_rows(request.to_file, surface);
   const NumberRows targets = read_number_rows(rows, surface.dim(), std::numeric_limits<Index>::max(),
                                               fmt::format("a point takes {}", surface.dim()));
   PathSolver solver(surface, request.options, context);

@@ -13,7 +13,7 @@
 namespace taut::app {
 namespace {
 
-double parse_number(std::string_view text, const std::string& what) {
+double parse_number(std::string_view text, const std::string& what, const char* remedy) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   if (text.starts_with('+')) text.remove_prefix(1);
@@ -23,19 +23,19 @@ double parse_number(std::string_view text, const std::string& what) {
     throw UsageError(fmt::format("{}: '{}' is beyond the range of numbers", what, text));
   }
   if (error != std::errc() || end != text.data() + text.size()) {
-    throw UsageError(fmt::format("{}: '{}' is no number; write numbers separated by commas, as in 1,0,0", what, text));
+    throw UsageError(fmt::format("{}: '{}' is no number; {}", what, text, remedy));
   }
   return value;
 }
 
 }  // namespace
 
-Vector parse_numbers(const std::string& text, const std::string& what) {
+Vector parse_numbers(const std::string& text, const std::string& what, const char* remedy) {
   std::vector<double> values;
   std::size_t begin = 0;
   while (true) {
     const std::size_t comma = text.find(',', begin);
-    values.push_back(parse_number(std::string_view(text).substr(begin, comma - begin), what));
+    values.push_back(parse_number(std::string_view(text).substr(begin, comma - begin), what, remedy));
     if (comma == std::string::npos) break;
     begin = comma + 1;
   }

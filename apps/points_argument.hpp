@@ -19,7 +19,8 @@ class UsageError : public std::runtime_error {
 [[nodiscard]] Vector parse_point(const std::string& text, const char* option, const Surface& surface);
 
 /// "1,0,0" as numbers; `what` names it in messages.
-[[nodiscard]] Vector parse_numbers(const std::string& text, const std::string& what);
+[[nodiscard]] Vector parse_numbers(const std::string& text, const std::string& what,
+                                   const char* remedy = "write numbers separated by commas, as in 1,0,0");
 
 /// "lo,hi" for every axis, or "x0,x1,y0,y1,...".
 [[nodiscard]] Box parse_box(const std::string& text, Index dim);

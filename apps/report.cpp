@@ -233,7 +233,8 @@ std::vector<SceneFact> path_facts(const Surface& surface, const PathResult& resu
                                              result.residual.surface, result.residual.geodesic_curvature)});
   }
   if (has_path(result) && result.corrected) {
-    facts.push_back({"method", fmt::format("{}, {} iterations", to_string(options.method), result.num_iterations)});
+    facts.push_back({"method", fmt::format("{}, {} iteration{}", to_string(options.method), result.num_iterations,
+                                           result.num_iterations == 1 ? "" : "s")});
   }
   if (result.flow) std::ranges::move(flow_facts(*result.flow), std::back_inserter(facts));
   if (has_path(result) && options.march != MarchMethod::convergent) {

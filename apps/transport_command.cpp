@@ -57,7 +57,7 @@ Points parse_vectors(const std::vector<std::string>& texts, Index d) {
 ExitCode carry_one(const TransportArguments& arguments, const Surface& surface, const Context& context) {
   Points stations(surface.dim(), 2);
   if (!arguments.along.empty()) {
-    stations = read_points(file_or_stdin(arguments.along), surface.dim(), context);
+    stations = read_point_list(arguments.along, surface, context);
   } else {
     stations.col(0) = parse_point(arguments.from, "--from", surface);
     stations.col(1) = parse_point(arguments.to, "--to", surface);
@@ -103,7 +103,7 @@ std::string carried_line(const PointsIn& vectors, std::string_view status) {
 /// To every target of a file: by the directions of a field on surfaces in space, else path by path.
 ExitCode carry_to_many(const TransportArguments& arguments, const Surface& surface, const Context& context) {
   const Index d = surface.dim();
-  CsvRows rows = open_rows(arguments.to_file);
+  CsvRows rows = open_rows(arguments.to_file, surface);
   const NumberRows targets =
       read_number_rows(rows, d, std::numeric_limits<Index>::max(), fmt::format("a point takes {}", d));
   const Points vectors = parse_vectors(arguments.vectors, d);

@@ -16,7 +16,6 @@
 #include "points_argument.hpp"
 #include "report.hpp"
 #include "taut/core/error.hpp"
-#include "taut/io/read_points.hpp"
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/point_sets.hpp"
 #include "terminal.hpp"
@@ -36,7 +35,7 @@ struct VoronoiArguments {
 /// "source,distance,error" for each point.
 ExitCode label_points(const VoronoiArguments& arguments, const Surface& surface, const Points& sources,
                       const DistanceOptions& options, const Context& context) {
-  const Points at = read_points(file_or_stdin(arguments.at), surface.dim(), context);
+  const Points at = read_point_list(arguments.at, surface, context);
   DistanceSolver solver(surface, sources, {}, options, context);
   const Distances found = solver.at(at);
   clear_progress();
@@ -67,7 +66,7 @@ ExitCode run(VoronoiArguments arguments) {
   refuse_to_overwrite({arguments.geodesic.surface.surface, arguments.sources, arguments.at}, results);
   const Context context = terminal_context(arguments.geodesic.common.terminal);
   const Surface surface = arguments.geodesic.load(context);
-  const Points sources = read_points(file_or_stdin(arguments.sources), surface.dim(), context);
+  const Points sources = read_point_list(arguments.sources, surface, context);
   DistanceOptions options = arguments.geodesic.distance_options();
   options.max_distance = arguments.max_distance;
   if (!arguments.at.empty()) return label_points(arguments, surface, sources, options, context);

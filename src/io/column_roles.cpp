@@ -158,8 +158,9 @@ ColumnRoles roles_from_header(const std::vector<std::string_view>& names) {
 }
 
 bool is_header(const std::vector<std::string_view>& fields) {
+  // ... or like the name of a sample, @17.
   const auto begins_like_a_number = [](std::string_view field) {
-    const auto first = field.find_first_not_of("+-.");
+    const auto first = field.find_first_not_of("+-.@");
     return first != std::string_view::npos && field[first] >= '0' && field[first] <= '9';
   };
   return !std::all_of(fields.begin(), fields.end(), is_number) &&

@@ -112,6 +112,8 @@ CsvRows::CsvRows(CsvRows&&) noexcept = default;
 CsvRows& CsvRows::operator=(CsvRows&&) noexcept = default;
 CsvRows::~CsvRows() = default;
 
+void CsvRows::set_samples(const Points& samples) { state_->parser.set_samples(&samples); }
+
 bool CsvRows::next(CsvRow& row) {
   State& state = *state_;
   std::string_view line;
@@ -122,7 +124,7 @@ bool CsvRows::next(CsvRow& row) {
       state.parser.choose_separator(line);
       const std::vector<std::string_view> fields = state.parser.split(line);
       const bool is_header = !std::exchange(state.header_passed, true) && detail::is_header(fields);
-      state.separator_known = !is_header || fields.size() > 1;  // a single word shows no separator
+      state.separator_known = fields.size() > 1;  // a single word shows no separator
       if (is_header) continue;
     }
     row.line = state.line;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <new>
+#include <string>
+#include <string_view>
+#include <system_error>
 
 #include "io/inflate.hpp"
 #include "io/readers.hpp"
@@ -39,6 +42,28 @@ constexpr std::array kFormats = {
     Format{".vtu", "an XML file", false, read_vtk_xml},
 };
 
+struct OtherFile {
+  std::string_view extension;
+  std::string_view advice;
+};
+
+/// What people have of the same kind of thing, and how they get what is read.
+constexpr std::array kOtherFiles = {
+    OtherFile{".laz", "compressed LAS; unpack it first: las2las -i in.laz -o out.las, or pdal translate"},
+    OtherFile{".e57", "E57 is not read; convert it first: pdal translate in.e57 out.las, or CloudCompare"},
+    OtherFile{".step", "STEP is not read; export a mesh from the CAD program, as .stl or .obj"},
+    OtherFile{".stp", "STEP is not read; export a mesh from the CAD program, as .stl or .obj"},
+    OtherFile{".iges", "IGES is not read; export a mesh from the CAD program, as .stl or .obj"},
+    OtherFile{".igs", "IGES is not read; export a mesh from the CAD program, as .stl or .obj"},
+    OtherFile{".3mf", "3MF is not read; export the mesh as .stl or .obj"},
+    OtherFile{".gltf", "glTF is not read; export the mesh as .ply or .obj"},
+    OtherFile{".glb", "glTF is not read; export the mesh as .ply or .obj"},
+    OtherFile{".fbx", "FBX is not read; export the mesh as .ply or .obj"},
+    OtherFile{".dcm", "DICOM is not read; convert the series to NIfTI first, as dcm2niix does"},
+    OtherFile{".xlsx", "a spreadsheet; save the table as .csv"},
+    OtherFile{".ods", "a spreadsheet; save the table as .csv"},
+};
+
 constexpr std::string_view kCompressed = ".gz";
 
 /// "scan.ply" of "scan.ply.gz"
@@ -61,11 +86,11 @@ Format format_of(const std::filesystem::path& path) {
   const auto* format =
       std::find_if(kFormats.begin(), kFormats.end(), [&](const Format& f) { return f.extension == extension; });
   if (format != kFormats.end()) return *format;
-  if (extension == ".laz") {
-    throw IoError(path.string(), "compressed LAS; unpack it first: las2las -i in.laz -o out.las, or pdal translate");
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
+    throw IoError(path.string(), "is a folder, not a file; name a file inside it");
   }
-  if (extension == ".e57") {
-    throw IoError(path.string(), "E57 is not read; convert it first: pdal translate in.e57 out.las, or CloudCompare");
+  for (const OtherFile& other : kOtherFiles) {
+    if (extension == other.extension) throw IoError(path.string(), std::string(other.advice));
   }
   const std::string problem = extension.empty() ? "the name has no extension" : "unknown extension " + quote(extension);
   throw IoError(path.string(), problem + "; point clouds and meshes are read from " + known_extensions() +

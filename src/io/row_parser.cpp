@@ -1,6 +1,8 @@
 #include "io/row_parser.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 #include <utility>
 
 #include "io/input_file.hpp"
@@ -39,6 +41,10 @@ NumberProblem read_decimal_comma(std::string_view field, double& value) {
 
 }  // namespace
 
+bool is_sample(std::string_view field) {
+  return field.size() > 1 && field[0] == '@' && field[1] >= '0' && field[1] <= '9';
+}
+
 bool is_number(std::string_view field) {
   double value = 0;
   return read_field(field, value) != NumberProblem::not_a_number;
@@ -64,6 +70,22 @@ void RowParser::choose_separator(std::string_view first_line) {
 }
 
 void RowParser::select(std::vector<std::size_t> columns) { columns_ = std::move(columns); }
+
+void RowParser::set_samples(const Points* samples) { samples_ = samples; }
+
+std::string RowParser::append_sample(std::string_view field, std::vector<double>& values) const {
+  if (samples_ == nullptr) return quote(field) + " names a sample, and here there are none; give coordinates";
+  Index index = 0;
+  const char* last = field.data() + field.size();
+  const auto [end, error] = std::from_chars(field.data() + 1, last, index);
+  if (error == std::errc::invalid_argument || end != last) return quote(field) + " is no sample; write as in @17";
+  if (error != std::errc() || index >= samples_->cols()) {
+    return quote(field) + ": samples go from @0 to @" + std::to_string(samples_->cols() - 1);
+  }
+  const auto point = samples_->col(index);
+  values.insert(values.end(), point.begin(), point.end());
+  return {};
+}
 
 std::string RowParser::parse(std::string_view line, std::vector<double>& values) {
   if (!columns_.empty() || separator_ == '\t') return parse_fields(line, values);
@@ -101,6 +123,10 @@ std::string RowParser::parse_fields(std::string_view line, std::vector<double>& 
     const std::size_t column = columns_.empty() ? i : columns_[i];
     if (column >= fields.size()) return explain(line, column);
     const std::string_view field = fields[column];
+    if (is_sample(field)) {
+      if (std::string problem = append_sample(field, values); !problem.empty()) return problem;
+      continue;
+    }
     double value = 0;
     // Where commas separate, a field holds one only if it stood in quotes.
     const bool comma = separator_ != ' ' && has_decimal_comma(field);

@@ -4,6 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "taut/core/types.hpp"
+
 namespace taut::detail {
 
 /// Reads lines of numbers separated by commas, semicolons, tabs or blanks; which of them, the first line decides.
@@ -18,6 +20,9 @@ class RowParser {
   /// all columns are read.
   void select(std::vector<std::size_t> columns);
 
+  /// From now on a field such as @17 stands for the coordinates of this sample, counted from 0. Null: there are none.
+  void set_samples(const Points* samples);
+
   /// Appends the numbers of `line` to `values`. Returns what is wrong, empty if nothing is.
   [[nodiscard]] std::string parse(std::string_view line, std::vector<double>& values);
   /// The fields of `line`, blanks and quotes around them removed.
@@ -29,13 +34,18 @@ class RowParser {
 
  private:
   [[nodiscard]] std::string parse_fields(std::string_view line, std::vector<double>& values);
+  [[nodiscard]] std::string append_sample(std::string_view field, std::vector<double>& values) const;
   [[nodiscard]] std::string explain(std::string_view line, std::size_t column) const;
 
   char separator_ = ' ';  // ' ' stands for blanks and tabs
   std::vector<std::size_t> columns_;
+  const Points* samples_ = nullptr;
   bool seen_comma_ = false;  // decimal signs in fields between which a comma does not separate
   bool seen_point_ = false;
 };
+
+/// Does the field name a sample, as @17 does?
+[[nodiscard]] bool is_sample(std::string_view field);
 
 /// Is the field a number as files without decimal commas write it, nan and inf included?
 [[nodiscard]] bool is_number(std::string_view field);

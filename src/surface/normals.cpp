@@ -95,10 +95,14 @@ Points estimate_normals(const PointCloud& cloud, Index neighbours, const Context
   const MergedPoints merged = detail::merge_duplicates(cloud.points);
   const Index rank = detail::affine_rank(merged.points);
   if (d < 2 || rank < d - 1) {
-    throw InvalidArgument(std::to_string(merged.points.cols()) + " different points in " + std::to_string(d) +
-                          " dimensions span only " + std::to_string(rank) +
+    const Index count = merged.points.cols();
+    const bool could_be_reduced = d > 3 && rank >= 2;
+    throw InvalidArgument(std::to_string(count) + (count == 1 ? " different point in " : " different points in ") +
+                          std::to_string(d) + " dimensions span only " + std::to_string(rank) +
                           (rank == 1 ? " direction (they lie on a line)" : " directions") + ": a surface needs " +
-                          std::to_string(std::max<Index>(d - 1, 1)));
+                          std::to_string(std::max<Index>(d - 1, 1)) +
+                          (could_be_reduced ? "; a fit is a hypersurface: reduce the dimension of the points first"
+                                            : (count == 1 ? "; give more points" : "")));
   }
   const KdTree tree(merged.points);
   const Index enough = std::max<Index>(neighbours, 2 * d);

@@ -76,7 +76,7 @@ Lettering letter(const Stage& stage, int width, int height) {
   return lettering;
 }
 
-std::vector<Label> point_labels(const Stage& stage, const Camera& camera, double point_radius, int width) {
+std::vector<Label> point_labels(const Stage& stage, const Camera& camera, double point_radius, double width) {
   constexpr double kSamePlace = 3;
   constexpr double kLabelRoom = 110;
   std::vector<Label> labels;

@@ -55,7 +55,7 @@ struct Lettering {
 };
 Lettering letter(const Stage& stage, int width, int height);
 
-/// The names of the points, beside them. Names of points that are seen in one place are joined.
-std::vector<Label> point_labels(const Stage& stage, const Camera& camera, double point_radius, int width);
+/// The names of the points, beside them, left of `width`. Names of points that are seen in one place are joined.
+std::vector<Label> point_labels(const Stage& stage, const Camera& camera, double point_radius, double width);
 
 }  // namespace taut::detail

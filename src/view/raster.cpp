@@ -406,7 +406,7 @@ class Screen {
 Image render(const Stage& stage, const Camera& camera, const RenderOptions& options, const Context& context) {
   const Screen screen(stage, camera, options);
   const double range = stage.scalar_max - stage.scalar_min;
-  const bool isolines = options.isolines && !stage.scalar_name.empty();
+  const bool isolines = options.isolines && draws_isolines(stage);
   const ScalarScale scale{static_cast<float>(stage.scalar_min), static_cast<float>(stage.scalar_max),
                           isolines ? static_cast<float>(nice_step(range, kIsolines)) : 0};
   Image image{options.width, options.height, {}};

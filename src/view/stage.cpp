@@ -232,6 +232,11 @@ Colour path_colour(std::size_t index) { return detail::kPathColours[index % deta
 
 namespace detail {
 
+bool draws_isolines(const Stage& stage) {
+  return !stage.scalar_name.empty() &&
+         std::ranges::none_of(stage.lines, [](const StageLines& lines) { return lines.name == "isolines"; });
+}
+
 Stage make_stage(const Scene& scene) {
   const Projection project(scene);
   Stage stage;

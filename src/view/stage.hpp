@@ -66,6 +66,9 @@ struct Stage {
 /// A path in pieces with gaps between them, as a failed one is drawn; lengths in model units.
 std::vector<Eigen::Matrix3Xf> dashes_of(const Eigen::Matrix3Xf& polyline, double dash, double gap);
 
+/// Are lines of equal value drawn on a mesh coloured by a scalar? Not where the scene brings its own, by that name.
+bool draws_isolines(const Stage& stage);
+
 /// Throws InvalidArgument for a scene that cannot be drawn.
 Stage make_stage(const Scene& scene);
 

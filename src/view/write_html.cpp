@@ -115,7 +115,8 @@ void write_scalar(Json& json, const Stage& stage) {
   const double range = stage.scalar_max - stage.scalar_min;
   json.open('{').key("name").string(stage.scalar_name);
   json.key("min").number(stage.scalar_min).key("max").number(stage.scalar_max);
-  json.key("step").number(detail::nice_step(range, kIsolines)).key("ticks").open('[');
+  json.key("step").number(detail::nice_step(range, kIsolines));
+  json.key("isolines").boolean(detail::draws_isolines(stage)).key("ticks").open('[');
   const double step = detail::nice_step(range, kTicks);
   for (double k = std::ceil(stage.scalar_min / step - 1e-6); k * step <= stage.scalar_max + 1e-6 * range; ++k) {
     json.open('[').number(k * step).string(detail::format_number(k * step, 6)).close(']');

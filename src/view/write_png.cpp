@@ -34,7 +34,8 @@ detail::Image lettered_image(const detail::Stage& stage, const PictureOptions& o
       context);
   put_on_white(image);
   detail::draw_lettering(lettering, image);
-  for (const detail::Label& label : detail::point_labels(stage, camera, path_width, options.width)) {
+  const double room = lettering.bar ? lettering.bar->x : options.width;
+  for (const detail::Label& label : detail::point_labels(stage, camera, path_width, room)) {
     detail::draw_label(label, image);
   }
   return image;

@@ -57,7 +57,8 @@ class SvgWriter {
     for (const detail::Mark& mark : lettering_.marks) draw(mark);
     for (const detail::Label& label : lettering_.labels) draw(label);
     if (options_.text) {
-      for (const detail::Label& label : detail::point_labels(stage_, camera_, point_radius_, options_.width)) {
+      const double room = lettering_.bar ? lettering_.bar->x : options_.width;
+      for (const detail::Label& label : detail::point_labels(stage_, camera_, point_radius_, room)) {
         draw(label);
       }
     }

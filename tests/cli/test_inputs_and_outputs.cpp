@@ -116,6 +116,49 @@ TEST(InputsAndOutputs, PointsAreSpacedEvenlyOnDemand) {
   }
 }
 
+TEST(InputsAndOutputs, FilesOfPointsMayNameSamples) {
+  const TempFolder folder;
+  std::string cloud = "x,y,z\n1,0,0\n0,1,0\n0,0,1\n-1,0,0\n0,-1,0\n0,0,-1\n";
+  for (const double x : {-1, 1}) {
+    for (const double y : {-1, 1}) {
+      for (const double z : {-1, 1}) {
+        const double r = std::sqrt(3);
+        cloud += std::to_string(x / r) + "," + std::to_string(y / r) + "," + std::to_string(z / r) + "\n";
+      }
+    }
+  }
+  const std::string surface = folder.write("ball.csv", cloud).string();
+  const auto length = [&](const std::string& from, const std::string& to) {
+    return nlohmann::json::parse(run_taut({"path", surface, "--from", from, "--to", to, "--json"}).out)["length"]
+        .get<double>();
+  };
+  const double first = length("@0", "@1");
+  const double second = length("@0", "@2");
+  const auto pairs = folder.write("pairs.csv", "@0,@1\n@0,0,0,1\n1,0,0,@1\n@0,@99\n");
+  const test::ProgramResult batch = run_taut({"path", surface, "--pairs", pairs.string()});
+  EXPECT_EQ(batch.exit_code, 1);
+  const std::vector<std::string> lines = lines_of(batch.out);
+  ASSERT_EQ(lines.size(), 4U) << batch.err;
+  EXPECT_NEAR(std::stod(lines[0]), first, 1e-9);
+  EXPECT_NEAR(std::stod(lines[1]), second, 1e-9);
+  EXPECT_NEAR(std::stod(lines[2]), first, 1e-9);
+  EXPECT_EQ(lines[3], "nan,inf,0,0,bad_input");
+  EXPECT_NE(batch.err.find("line 4: '@99': samples go from @0 to @13"), std::string::npos) << batch.err;
+  const auto ends = folder.write("ends.csv", "@1\n0,0,1\n");
+  for (const std::vector<std::string>& question :
+       {std::vector<std::string>{"field", surface, "--from", "@0", "--at", ends.string()},
+        {"path", surface, "--from", "@0", "--to-file", ends.string()}}) {
+    const test::ProgramResult result = run_taut(question);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    ASSERT_EQ(lines_of(result.out).size(), 2U) << result.out;
+    EXPECT_NEAR(std::stod(lines_of(result.out)[0]), first, 1e-5);
+    EXPECT_NEAR(std::stod(lines_of(result.out)[1]), second, 1e-5);
+  }
+  const test::ProgramResult none = run_taut({"field", kSphere, "--from", "1,0,0", "--at", ends.string()});
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_NE(none.err.find("'@1' names a sample, and here there are none; give coordinates"), std::string::npos);
+}
+
 TEST(InputsAndOutputs, HelpAndShortOptionsAreUnderstood) {
   EXPECT_EQ(run_taut({"-V"}).out, run_taut({"--version"}).out);
   EXPECT_EQ(run_taut({"help"}).out, run_taut({"--help"}).out);

@@ -37,6 +37,23 @@ TEST(CsvRows, HeaderAndByteOrderMarkAreSkipped) {
   EXPECT_EQ(rows_of("").size(), 0U);
 }
 
+TEST(CsvRows, FieldsMayNameSamples) {
+  Points samples(2, 3);
+  samples << 1, 2, 3, 10, 20, 30;
+  std::istringstream in("@0\n@2,@1\n5,6,@1\n@3\n@1x\n");
+  CsvRows rows(in, "stdin");
+  rows.set_samples(samples);
+  std::vector<CsvRow> all;
+  for (CsvRow row; rows.next(row);) all.push_back(row);
+  ASSERT_EQ(all.size(), 5U);  // a first line of samples is no header
+  EXPECT_EQ(all[0].values, (std::vector<double>{1, 10}));
+  EXPECT_EQ(all[1].values, (std::vector<double>{3, 30, 2, 20}));
+  EXPECT_EQ(all[2].values, (std::vector<double>{5, 6, 2, 20}));
+  EXPECT_NE(all[3].problem.find("samples go from @0 to @2"), std::string::npos) << all[3].problem;
+  EXPECT_NE(all[4].problem, "");
+  EXPECT_NE(rows_of("@1\n").front().problem.find("here there are none"), std::string::npos);
+}
+
 TEST(CsvRows, ABadLineDoesNotEndTheWalk) {
   const auto rows = rows_of("1,2\nabc,2\n3,nan\n1e999,0\n,1\n5,6\n");
   ASSERT_EQ(rows.size(), 6U);

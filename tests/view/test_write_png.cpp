@@ -104,6 +104,21 @@ TEST(WritePng, ScalarColoursFollowViridis) {
   EXPECT_GT(high[1], high[2]);  // yellow
 }
 
+TEST(WritePng, IsolinesOfTheSceneTakeThePlaceOfDrawnOnes) {
+  Scene scene = test::ball_scene();
+  scene.meshes[0].coloured_by = "polar angle";
+  scene.paths.clear();
+  scene.points.clear();
+  const auto picture = [&](bool isolines) {
+    return to_png(scene, {.width = 200, .height = 200, .text = false, .isolines = isolines});
+  };
+  const std::string none = picture(false);
+  EXPECT_NE(picture(true), none);
+  // Two vertices inside the ball, where no line of theirs is seen.
+  scene.lines.push_back({.vertices = Points::Zero(3, 2), .segments = Eigen::Vector2i(0, 1), .name = "isolines"});
+  EXPECT_EQ(picture(true), none);
+}
+
 /// The mean place of the pixels that pass a test.
 template <class Test>
 Eigen::Vector2d centre_of(const Picture& picture, Test test) {

@@ -34,6 +34,10 @@ class CsvRows {
   CsvRows& operator=(CsvRows&&) noexcept;
   ~CsvRows();
 
+  /// From now on a field such as @17 stands for the d coordinates of column 17 (from 0) of `samples`, d x n, which must
+  /// outlive this. Without samples such a field is the line's `problem`.
+  void set_samples(const Points& samples);
+
   /// Reads the next line with numbers into `row`; false at the end. Throws IoError when reading fails.
   [[nodiscard]] bool next(CsvRow& row);
 
@@ -47,8 +51,11 @@ class CsvRows {
 /// `.csv`. In `.csv`, `.xyz`, `.pts` and plain text a line is a point: `dim` numbers, or columns named x y z ... in a
 /// header.
 ///
+/// In `.csv`, `.tsv`, `.txt` and other plain text a line @17 stands for column 17 (from 0) of `samples`, if given.
+///
 /// `dim` > 0 is the dimension the points must have. Throws IoError as `read_point_cloud` does, and when the dimension
 /// is another one.
-[[nodiscard]] Points read_points(const std::filesystem::path& path, Index dim, const Context& context = {});
+[[nodiscard]] Points read_points(const std::filesystem::path& path, Index dim, const Context& context = {},
+                                 const Points* samples = nullptr);
 
 }  // namespace taut

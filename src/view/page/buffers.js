@@ -3,7 +3,7 @@
 let gl = null;
 let programs = {};
 let parts = {};
-const shown = { surface: true, wire: false, paths: true, cells: Boolean(scene.cells && scene.cells.shown), colours: true, isolines: true, labels: true };
+const shown = { surface: true, wire: false, paths: true, cells: Boolean(scene.cells && scene.cells.shown), colours: true, isolines: Boolean(scene.scalar && scene.scalar.isolines), labels: true };
 
 function compile([vertex, fragment]) {
   const program = gl.createProgram();
