@@ -24,7 +24,7 @@ struct BorderAnswer {
 
 /// The shortest path from p to q (on the surface) within the surface's domain, along its border where need be: the way
 /// over the cells that stays inside, pulled taut (`pull_taut`), and made a geodesic where it touches nothing. Along a
-/// border it is known to some 1e-6 of its length, as `length_error` says. Other ways round are not looked for. Surfaces
+/// border it is known to some 1e-5 of its length, as `length_error` says. Other ways round are not looked for. Surfaces
 /// in R^3 (k = 1) with a smooth domain.
 [[nodiscard]] BorderAnswer search_along_border(const Surface& surface, const PathOptions& options,
                                                const SurfaceCells& cells, const Vector& p, const Vector& q,
