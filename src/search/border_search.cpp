@@ -2,8 +2,6 @@
 // want cells smaller than everything on the border; this follows one way that stays inside.
 #include "search/border_search.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -17,7 +17,6 @@
 #include "surface/rbf/support_domain.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
