@@ -497,6 +497,14 @@ bool FacetedSurface::matters(int kink, const FormulaKinks::Sides& sides, const s
   });
 }
 
+const std::vector<bool>& FacetedSurface::which_matter(const FormulaKinks::Sides& sides, const std::vector<int>& zero) {
+  const auto [known, added] = which_matter_.try_emplace({sides, zero});
+  if (added) {
+    for (const int kink : zero) known->second.push_back(matters(kink, sides, zero));
+  }
+  return known->second;
+}
+
 std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
   Eigen::VectorXd value;
   Eigen::Matrix<double, 3, Eigen::Dynamic> gradient;
@@ -536,8 +544,10 @@ std::optional<Star> FacetedSurface::star(const Point3& x, double tolerance) {
     double low = 0;
     double width = kTwoPi;
     bool empty = false;
-    for (const int z : zero) {
-      if (!matters(z, other, zero)) continue;
+    const std::vector<bool>& bounding = which_matter(other, zero);
+    for (std::size_t k = 0; k < zero.size(); ++k) {
+      if (!bounding[k]) continue;
+      const int z = zero[k];
       const int smooth = smooth_condition(z, other);
       Point3 g;
       (void)condition(smooth, x, g);

@@ -141,6 +141,8 @@ class FacetedSurface {
   void drop_idle_kinks(std::vector<int>& conditions) const;
   /// Does a kink that vanishes at a point, with all of `zero`, bound the face of these sides there.
   [[nodiscard]] bool matters(int kink, const FormulaKinks::Sides& sides, const std::vector<int>& zero);
+  /// The same of each of them, kept: the same ones meet all along an edge.
+  [[nodiscard]] const std::vector<bool>& which_matter(const FormulaKinks::Sides& sides, const std::vector<int>& zero);
   [[nodiscard]] int edge_of(int a, int b, int condition);
   void evaluate_conditions(const Point3& x, Eigen::VectorXd& value, Eigen::Matrix<double, 3, Eigen::Dynamic>* gradient);
 
@@ -164,6 +166,7 @@ class FacetedSurface {
   std::map<std::pair<int, FormulaKinks::Sides>, int> smooth_of_sides_;
   std::vector<SharpEdge> edges_;
   std::map<std::tuple<int, int, int>, int> edge_of_;
+  std::map<std::pair<FormulaKinks::Sides, std::vector<int>>, std::vector<bool>> which_matter_;
 };
 
 /// Is the surface one whose faces may meet in edges: a formula in R^3 with `min max abs sign`.
