@@ -35,7 +35,7 @@ std::unique_ptr<ExponentialMap::Backend> make_backend(const Surface& surface, co
 class OnSurface : public ExponentialMap::Backend {
  public:
   OnSurface(const Surface& surface, const ExponentialOptions& options)
-      : surface_(surface), tracer_(make_backend(surface, options)) {}
+      : surface_(surface), evaluator_(surface.make_evaluator()), tracer_(make_backend(surface, options)) {}
 
   ExponentialResult trace(const Vector& from, const Vector& direction, double length, const Context& context) override {
     for (const auto& [vector, name] : {std::pair{&from, "start"}, std::pair{&direction, "direction"}}) {
@@ -49,15 +49,18 @@ class OnSurface : public ExponentialMap::Backend {
     }
     if (!std::isfinite(length)) throw InvalidArgument("the length is " + describe(length) + ", must be finite");
     if (!(direction.stableNorm() > 0)) throw InvalidArgument("the direction is zero; give one to go in");
-    const ProjectionResult projected = project_to_surface(surface_, from);
-    if (!projected.converged) {
+    Points start = from;
+    // The single point's projection would make an evaluator each time, but it says what is wrong.
+    if (!project_to_surface(*evaluator_, surface_.dim(), surface_.codim(), start)(0) &&
+        !project_to_surface(surface_, from).converged) {
       throw InvalidArgument("no point of the surface was found near the start " + describe(from) + "; give one closer");
     }
-    return tracer_->trace(projected.point, direction / direction.stableNorm(), length, context);
+    return tracer_->trace(start, direction / direction.stableNorm(), length, context);
   }
 
  private:
   Surface surface_;
+  std::unique_ptr<Evaluator> evaluator_;
   std::unique_ptr<ExponentialMap::Backend> tracer_;
 };
 

@@ -23,6 +23,8 @@ class RayField {
  public:
   using VectorD = Eigen::Matrix<double, D, 1>;
   using MatrixD = Eigen::Matrix<double, D, Eigen::Dynamic>;
+  /// A D known at compile time stands for one equation.
+  using Normals = Eigen::Matrix<double, D, D == Eigen::Dynamic ? Eigen::Dynamic : 1>;
   /// Up to this dimension, and for one equation, the whole Hessian comes with the gradient in one visit.
   static constexpr Index kDense = 6;
 
@@ -56,7 +58,7 @@ class RayField {
   [[nodiscard]] Index dim() const { return D > 0 ? D : d_; }
   [[nodiscard]] Index codim() const { return k_; }
   [[nodiscard]] auto normals(Index j) const {  ///< d x k, orthonormal
-    return Eigen::Map<const MatrixD>(&q_[size(j * d_ * k_)], dim(), k_);
+    return Eigen::Map<const Normals>(&q_[size(j * d_ * k_)], dim(), k_);
   }
   /// Smallest |R_ii| of point j: |grad F| for one equation.
   [[nodiscard]] double gradient(Index j) const {
@@ -73,7 +75,7 @@ class RayField {
       batch.weight = weight_.data();
       batch.hessian = hessian_.data();
       evaluator_->evaluate(batch);
-      for (Index j = 0; j < n; ++j) {
+      for (Index j = 0; D != 3 && j < n; ++j) {
         Eigen::Map<VectorD>(&h_[size(j * d_)], dim()).noalias() =
             hessian(j) * Eigen::Map<const VectorD>(v + j * d_, dim());
       }
@@ -88,11 +90,56 @@ class RayField {
       evaluator_->hessian_times({.n = n * k_, .x = many_x_.data(), .weight = weight_.data()}, many_v_.data(),
                                 h_.data());
     }
+    return complete(n, v);
+  }
+
+  /// The accelerations of n points on a surface in space alone; `v` and `a` n x 3, a coordinate contiguous. What else
+  /// is known of the points then `complete` gathers. False where that has to tell why.
+  [[nodiscard]] bool accelerate_only(Index n, const double* x, const double* v, double* a) requires(D == 3) {
+    num_evaluated += n;
+    evaluator_->evaluate({.n = n,
+                          .x = x,
+                          .value = value.data(),
+                          .jacobian = jacobian_.data(),
+                          .weight = weight_.data(),
+                          .hessian = hessian_.data()});
+    bool fine = true;
+    for (Index j = 0; j < n; ++j) {
+      const double* g = &jacobian_[size(3 * j)];
+      const double* h = &hessian_[size(9 * j)];
+      const double u = v[j];
+      const double w = v[n + j];
+      const double z = v[2 * n + j];
+      const double square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+      const double bent =
+          (h[0] * u * u + h[4] * w * w + h[8] * z * z) + 2 * (h[1] * u * w + h[2] * u * z + h[5] * w * z);
+      const double lambda = bent / square;
+      // Squares of very large or small gradients lose digits: `complete` can do without them.
+      fine = fine && square > 1e-200 && square < 1e200 && std::abs(lambda) < 1e200 && std::isfinite(value(0, j));
+      for (Index c = 0; c < 3; ++c) a[c * n + j] = -lambda * g[c];
+    }
+    return fine;
+  }
+
+  /// Everything at the points of the last visit. Stops at the first one where J loses rank or something is not finite.
+  Outcome complete(Index n, const double* v) {
+    if (D == 3) {
+      for (Index j = 0; j < n; ++j) {
+        Eigen::Map<VectorD>(&h_[size(j * d_)], dim()).noalias() =
+            hessian(j) * Eigen::Map<const VectorD>(v + j * d_, dim());
+      }
+    }
     for (Index j = 0; j < n; ++j) {
       const Outcome outcome = accelerate(j, v + j * d_);
       if (outcome != Outcome::regular) return outcome;
     }
     return Outcome::regular;
+  }
+
+  /// Gaussian curvature of a surface in space at point j, e the unit normal of v within the surface.
+  [[nodiscard]] double gauss_curvature(Index j, const VectorD& e) const requires(D == 3) {
+    const double bend = e.dot(Eigen::Map<const VectorD>(&h_[size(3 * j)])) / r_[size(j)];
+    return lambda_[size(j)] * e.dot(hessian(j) * e) - bend * bend;
   }
 
   /// The second fundamental form of v and each column of `frame` (d x q) at point j, as coordinates y (k x q) with
@@ -168,9 +215,12 @@ class RayField {
     const VectorD g = Eigen::Map<const VectorD>(&jacobian_[size(j * d_)], dim());
     const VectorD v = Eigen::Map<const VectorD>(velocity, dim());
     const VectorD h = Eigen::Map<const VectorD>(&h_[size(j * d_)], dim());
-    if (!std::isfinite(value(0, j)) || !g.allFinite()) return Outcome::not_finite;
-    const double length = NormalSpace<D>::norm(dim(), g.data());
-    if (!(length > 0)) return Outcome::singular;
+    double length = g.norm();
+    if (!(length > 1e-100 && length < 1e100)) {
+      if (!g.allFinite()) return Outcome::not_finite;
+      length = NormalSpace<D>::norm(dim(), g.data());
+      if (!(length > 0)) return Outcome::singular;
+    }
     const VectorD n = g / length;
     const double y = h.dot(v) / length;
     Eigen::Map<VectorD>(&q_[size(j * d_)], dim()) = n;
@@ -179,7 +229,7 @@ class RayField {
     value(0, j) /= length;
     normal_velocity(0, j) = n.dot(v);
     acceleration.col(j) = -y * n;
-    return acceleration.col(j).allFinite() ? Outcome::regular : Outcome::not_finite;
+    return std::isfinite(value(0, j)) && std::isfinite(y) ? Outcome::regular : Outcome::not_finite;
   }
 
   std::unique_ptr<Evaluator> evaluator_;

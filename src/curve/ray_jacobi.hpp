@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
@@ -29,12 +30,17 @@ class RayJacobi {
   using Block = Eigen::Matrix<double, Q, Q>;
   using Transfer = Eigen::Matrix<double, Q2, Q2>;  ///< (j, j') at the start of a step -> at its end
 
+  static constexpr int kFrame = D > 0 ? D* Q : Eigen::Dynamic;
+  static constexpr int kBlock = D > 0 ? Q* Q : Eigen::Dynamic;
+  static constexpr int kFields = D > 0 ? 2 * Q* Q : Eigen::Dynamic;
+  using FieldColumn = Eigen::Matrix<double, kFields, 1>;
+
   RayJacobi(Index d, Index k) : d_(d), k_(k), q_(d - k - 1) {
     frame_.resize(d_, q_);
     end_frame_.resize(d_, q_);
-    for (Eigen::MatrixXd* m : {&frames_, &bent_, &slope_}) m->resize(d_ * q_, kStages);
+    for (auto* m : {&frames_, &bent_, &slope_}) m->resize(d_ * q_, kStages);
     curvature_.resize(q_ * q_, kStages);
-    for (Eigen::MatrixXd* m : {&fields_, &pull_, &last_}) m->resize(2 * q_ * q_, kStages);
+    for (auto* m : {&fields_, &pull_, &last_, &straight_}) m->resize(2 * q_ * q_, kStages);
     transfer.resize(2 * q_, 2 * q_);
     y_.resize(k_, q_);
   }
@@ -45,12 +51,16 @@ class RayJacobi {
 
   [[nodiscard]] Index num_fields() const { return q_; }
 
-  void start(const RayState& state) {
-    Eigen::MatrixXd normal(d_, k_ + 1);
-    normal << state.normals, state.v;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(normal);
-    const Eigen::MatrixXd all = qr.householderQ();
-    frame_ = all.rightCols(q_);
+  void start(const RayState<D>& state) {
+    if constexpr (D == 3) {
+      frame_ = state.normals.cross(state.v).normalized();
+    } else {
+      Eigen::MatrixXd normal(d_, k_ + 1);
+      normal << state.normals, state.v;
+      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(normal);
+      const Eigen::MatrixXd all = qr.householderQ();
+      frame_ = all.rightCols(q_);
+    }
     position_ = Block::Zero(q_, q_);
     velocity_ = Block::Identity(q_, q_);
     at_start_ = true;
@@ -74,7 +84,7 @@ class RayJacobi {
   [[nodiscard]] int num_conjugate(double h) const { return static_cast<int>((pivots(h).array() < 0).count()); }
 
   /// Goes on to the end of the step, where the ray now is.
-  void accept(const RayState& arrived) {
+  void accept(const RayState<D>& arrived) {
     Block next = transfer.topLeftCorner(q_, q_) * position_ + transfer.topRightCorner(q_, q_) * velocity_;
     velocity_ = (transfer.bottomLeftCorner(q_, q_) * position_ + transfer.bottomRightCorner(q_, q_) * velocity_).eval();
     position_ = next;
@@ -148,6 +158,12 @@ class RayJacobi {
   void find_curvature(RayStep<D>& step, double h) {
     const GaussCollocation& t = GaussCollocation::tables();
     auto& field = step.nodes();
+    if constexpr (D == 3) {
+      for (Index i = 0; i < kStages; ++i) curvature_(0, i) = field.gauss_curvature(i, frames_.col(i));
+      bend = h * h * curvature_.cwiseAbs().maxCoeff();
+      resolution = h * h * curvature_.lazyProduct(t.to_legendre.template rightCols<2>()).cwiseAbs().maxCoeff();
+      return;
+    }
     field.bend_along(kStages, step.node_x().data(), q_, frames_.data(), bent_.data());
     for (Index i = 0; i < kStages; ++i) {
       const Eigen::Map<const Frame> e(frames_.col(i).data(), d_, q_);
@@ -169,21 +185,22 @@ class RayJacobi {
       base << Block::Identity(q_, q_), h * t.node(i) * Block::Identity(q_, q_);
       Eigen::Map<Fields>(fields_.col(i).data(), q_, m) = base;
     }
-    const Eigen::MatrixXd straight = fields_;
-    const double enough = 1e-17 * std::max(1.0, h);
+    straight_ = fields_;
+    const double enough = 1e-16 * std::max(1.0, h);  // a visit more would change a tenth of that at most
     for (int visit = 0; visit < 60; ++visit) {
       for (Index i = 0; i < kStages; ++i) {
         Eigen::Map<Fields>(pull_.col(i).data(), q_, m).noalias() =
             -(Eigen::Map<const Block>(curvature_.col(i).data(), q_, q_) *
               Eigen::Map<const Fields>(fields_.col(i).data(), q_, m));
       }
-      last_.noalias() = straight + (h * h) * (pull_ * t.twice);
+      last_ = straight_;
+      last_.noalias() += (h * h) * pull_.lazyProduct(t.twice);
       const double change = (last_ - fields_).cwiseAbs().maxCoeff();
       fields_.swap(last_);
       if (!(change > enough)) break;
     }
-    const Eigen::VectorXd gain = h * pull_ * t.end_once.transpose();
-    const Eigen::VectorXd shift = (h * h) * pull_ * t.end_twice.transpose();
+    const FieldColumn gain = h * pull_.lazyProduct(t.end_once.transpose());
+    const FieldColumn shift = (h * h) * pull_.lazyProduct(t.end_twice.transpose());
     base << Block::Identity(q_, q_), h * Block::Identity(q_, q_);
     transfer.topRows(q_) = base + Eigen::Map<const Fields>(shift.data(), q_, m);
     base << Block::Zero(q_, q_), Block::Identity(q_, q_);
@@ -194,10 +211,10 @@ class RayJacobi {
   Frame frame_, end_frame_;
   Block position_, velocity_;  // J and J' of the fields that vanish at the start of the ray
   bool at_start_ = true;
-  Eigen::MatrixXd frames_, bent_, slope_;  // d q x kStages
-  Eigen::MatrixXd curvature_;              // q q x kStages
-  Eigen::MatrixXd fields_, pull_, last_;   // 2 q q x kStages
-  Eigen::MatrixXd y_;                      // k x q
+  Eigen::Matrix<double, kFrame, kStages> frames_, bent_, slope_;             // d q x kStages
+  Eigen::Matrix<double, kBlock, kStages> curvature_;                         // q q x kStages
+  Eigen::Matrix<double, kFields, kStages> fields_, pull_, last_, straight_;  // 2 q q x kStages
+  Eigen::MatrixXd y_;                                                        // k x q
 };
 
 }  // namespace taut::detail

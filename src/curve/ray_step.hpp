@@ -14,11 +14,38 @@
 namespace taut::detail {
 
 /// Where a ray is: a point of the surface and a unit tangent there, with what is known of the surface there.
+template <int D>
 struct RayState {
-  Vector x;                 ///< d
-  Vector v;                 ///< d
-  Vector acceleration;      ///< d
-  Eigen::MatrixXd normals;  ///< d x k
+  Eigen::Matrix<double, D, 1> x;
+  Eigen::Matrix<double, D, 1> v;
+  Eigen::Matrix<double, D, 1> acceleration;
+  typename RayField<D>::Normals normals;  ///< d x k
+};
+
+/// What GaussCollocation tells of the nodes and checks of a step, a row each: applied to one node value a row, it
+/// runs through contiguous numbers.
+struct RayRows {
+  using Square = GaussCollocation::Square;
+  Square once, twice, to_legendre;  ///< row i: weights of node i, of the i-th coefficient
+  Square check_once, check_twice;   ///< of the checks but the first, which is the start of the step
+  Eigen::Matrix<double, GaussCollocation::kChecks, GaussCollocation::kStages> check_value;
+  Eigen::Matrix<double, GaussCollocation::kStages, 1> node, check;
+
+  [[nodiscard]] static const RayRows& tables() {
+    static const RayRows rows = [] {
+      const GaussCollocation& t = GaussCollocation::tables();
+      constexpr int kStages = GaussCollocation::kStages;
+      return RayRows{.once = t.once.transpose(),
+                     .twice = t.twice.transpose(),
+                     .to_legendre = t.to_legendre.transpose(),
+                     .check_once = t.check_once.rightCols<kStages>().transpose(),
+                     .check_twice = t.check_twice.rightCols<kStages>().transpose(),
+                     .check_value = t.check_value.transpose(),
+                     .node = t.node.transpose(),
+                     .check = t.check.rightCols<kStages>().transpose()};
+    }();
+    return rows;
+  }
 };
 
 /// One step of a geodesic, x'' = II(x', x'), by Gauss collocation (order 2 kStages, symmetric). The nodes are solved
@@ -28,8 +55,11 @@ class RayStep {
  public:
   using Tables = GaussCollocation;
   static constexpr int kStages = Tables::kStages;
+  using State = RayState<D>;
   using VectorD = Eigen::Matrix<double, D, 1>;
   using NodeMatrix = Eigen::Matrix<double, D, kStages>;
+  using NodeRows =
+      Eigen::Matrix<double, kStages, D>;  ///< a node a row: what a coordinate is at the nodes is contiguous
 
   enum class Verdict : unsigned char {
     good,      // the figures below tell how good
@@ -41,11 +71,15 @@ class RayStep {
 
   explicit RayStep(const Surface& surface) : nodes_(surface, kStages), checks_(surface, kStages) {
     const Index d = surface.dim();
-    for (NodeMatrix* m : {&a_, &x_, &v_, &before_, &check_x_, &check_v_, &legendre_}) m->resize(d, kStages);
+    for (NodeMatrix* m : {&x_, &v_, &check_x_, &check_v_}) m->resize(d, kStages);
+    for (NodeRows* m : {&a_, &next_, &x_rows_, &v_rows_, &legendre_}) m->resize(kStages, d);
     end_x_.resize(d);
     end_v_.resize(d);
     legendre_.setZero();
   }
+
+  /// The iteration for the nodes ends where the velocity would change by this part of how much it turns.
+  double enough = std::numeric_limits<double>::epsilon();
 
   double error_x = 0;      ///< of the end, model units
   double error_v = 0;      ///< of the end, radians
@@ -64,14 +98,14 @@ class RayStep {
   [[nodiscard]] double step() const { return h_; }
 
   /// What is known of a point before any step.
-  typename RayField<D>::Outcome look(RayState& state) {
+  typename RayField<D>::Outcome look(State& state) {
     const auto outcome = checks_.evaluate(1, state.x.data(), state.v.data());
     if (outcome == RayField<D>::Outcome::regular) {
       state.acceleration = checks_.acceleration.col(0);
       state.normals = checks_.normals(0);
       weakest = checks_.gradient(0);
       legendre_.setZero();
-      legendre_.col(0) = state.acceleration;
+      legendre_.row(0) = state.acceleration.transpose();
       h_ = 1;
     }
     return outcome;
@@ -79,17 +113,17 @@ class RayStep {
 
   /// Tries a step of length h. The first guess is the last attempt's series, on which this step begins at `offset`
   /// (0: the same step again, 1: the next one).
-  Verdict attempt(const RayState& from, double h, double offset) {
+  Verdict attempt(const State& from, double h, double offset) {
     predict(from, h / h_, offset);
     h_ = h;
     const Verdict settled = settle(from);
-    legendre_.noalias() = a_.lazyProduct(tables_.to_legendre);
+    legendre_.noalias() = rows_.to_legendre.lazyProduct(a_);
     return settled == Verdict::good ? check(from) : settled;
   }
 
   /// The end of the step: back on the surface (as far as the step may have left it; what is more is the noise of F),
   /// the velocity tangent and of unit length.
-  void arrive(RayState& state) {
+  void arrive(State& state) {
     const Index last = kStages - 1;
     state.normals = checks_.normals(last);
     state.acceleration = checks_.acceleration.col(last);
@@ -102,94 +136,122 @@ class RayStep {
   }
 
   /// x at tau in [0, 1] of the last attempt, to the order of its nodes (not of its end).
-  [[nodiscard]] Vector point(const RayState& from, double tau) const {
+  [[nodiscard]] Vector point(const State& from, double tau) const {
     Eigen::Matrix<double, kStages, 1> first;
     Eigen::Matrix<double, kStages, 1> second;
     Tables::legendre_integrals(tau, first, second);
-    return from.x + tau * h_ * from.v + h_ * h_ * (legendre_ * second);
+    return from.x + tau * h_ * from.v + h_ * h_ * (legendre_.transpose() * second);
   }
 
  private:
+  using Outcome = typename RayField<D>::Outcome;
+
   /// The first guess: the last attempt's series, or, where that is carried too far, the acceleration at the start.
-  void predict(const RayState& from, double ratio, double offset) {
+  void predict(const State& from, double ratio, double offset) {
+    using Nodes = Eigen::Array<double, kStages, 1>;
+    const Nodes xi = 2 * (offset + rows_.node.array() * ratio) - 1;
     Eigen::Matrix<double, kStages, kStages> basis;
-    for (int i = 0; i < kStages; ++i) Tables::legendre(offset + tables_.node(i) * ratio, basis.col(i));
-    a_.noalias() = legendre_.lazyProduct(basis);
+    basis.col(0).setOnes();
+    basis.col(1) = xi;
+    for (int n = 2; n < kStages; ++n) {
+      basis.col(n) = ((2 * n - 1) * xi * basis.col(n - 1).array() - (n - 1) * basis.col(n - 2).array()) / n;
+    }
+    a_.noalias() = basis.lazyProduct(legendre_);
     const double most = 2 * std::max(from.acceleration.norm(), legendre_.cwiseAbs().maxCoeff());
     for (int i = 0; i < kStages; ++i) {
-      if (!(a_.col(i).norm() <= most)) a_.col(i) = from.acceleration;
+      if (!(a_.row(i).norm() <= most)) a_.row(i) = from.acceleration.transpose();
     }
   }
 
-  Verdict settle(const RayState& from) {
+  /// Accelerations at the nodes for the positions and velocities there: `next_`.
+  typename RayField<D>::Outcome visit() {
+    x_ = x_rows_.transpose();
+    if constexpr (D == 3) {
+      if (nodes_.accelerate_only(kStages, x_.data(), v_rows_.data(), next_.data())) return Outcome::regular;
+      v_ = v_rows_.transpose();
+      const Outcome outcome = nodes_.complete(kStages, v_.data());
+      if (outcome != Outcome::regular) return outcome;
+    } else {
+      v_ = v_rows_.transpose();
+      const Outcome outcome = nodes_.evaluate(kStages, x_.data(), v_.data());
+      if (outcome != Outcome::regular) return outcome;
+    }
+    next_ = nodes_.acceleration.leftCols(kStages).transpose();
+    return Outcome::regular;
+  }
+
+  Verdict settle(const State& from) {
     constexpr int kMostVisits = 40;
-    constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
     double last_change = std::numeric_limits<double>::infinity();
     int stalled = 0;
     num_visits = 0;
-    for (int visit = 0; visit < kMostVisits; ++visit) {
-      v_.noalias() = h_ * a_.lazyProduct(tables_.once);
-      v_.colwise() += from.v;
-      x_.noalias() = (h_ * h_) * a_.lazyProduct(tables_.twice);
-      x_.noalias() += (h_ * from.v).lazyProduct(tables_.node);
-      x_.colwise() += from.x;
+    for (int visits = 0; visits < kMostVisits; ++visits) {
+      v_rows_.noalias() = h_ * rows_.once.lazyProduct(a_);
+      v_rows_.rowwise() += from.v.transpose();
+      x_rows_.noalias() = (h_ * h_) * rows_.twice.lazyProduct(a_);
+      x_rows_.noalias() += rows_.node.lazyProduct((h_ * from.v).transpose());
+      x_rows_.rowwise() += from.x.transpose();
       ++num_visits;
-      const auto outcome = nodes_.evaluate(kStages, x_.data(), v_.data());
-      if (outcome == RayField<D>::Outcome::not_finite) return Verdict::not_finite;
-      if (outcome == RayField<D>::Outcome::singular) return Verdict::singular;
-      before_ = a_;
-      a_ = nodes_.acceleration.leftCols(kStages);
-      const double change = (a_ - before_).cwiseAbs().maxCoeff() * h_;
+      const Outcome outcome = visit();
+      if (outcome == Outcome::not_finite) return Verdict::not_finite;
+      if (outcome == Outcome::singular) return Verdict::singular;
+      const double change = (next_ - a_).cwiseAbs().maxCoeff() * h_;
+      a_.swap(next_);
       const double most = a_.cwiseAbs().maxCoeff() * h_;
       if (!(most <= 20)) return Verdict::diverged;
       // What the next visit would change: the changes shrink by a factor a visit.
-      const double ahead = visit > 0 ? change * std::min(1.0, change / last_change) : change;
-      if (ahead <= kEpsilon * std::max(most, 0.01)) break;
-      if (visit > 1 && change > 0.5 * last_change) {
+      const double ahead = visits > 0 ? change * std::min(1.0, change / last_change) : change;
+      if (ahead <= enough * std::max(most, 0.01)) break;
+      if (visits > 1 && change > 0.5 * last_change) {
         if (change <= 1e-9) {
           if (++stalled == 2) break;  // rounding of F
         } else if (change > 1.5 * last_change || ++stalled == 3) {
           return Verdict::diverged;
         }
       }
-      if (visit + 1 == kMostVisits) return Verdict::diverged;
+      if (visits + 1 == kMostVisits) return Verdict::diverged;
       last_change = change;
+    }
+    if constexpr (D == 3) {
+      v_ = v_rows_.transpose();
+      if (nodes_.complete(kStages, v_.data()) != Outcome::regular) return Verdict::not_finite;
     }
     return Verdict::good;
   }
 
-  Verdict check(const RayState& from) {
-    const auto& inner = tables_.check;
-    check_v_.noalias() = h_ * a_.lazyProduct(tables_.check_once.template rightCols<kStages>());
-    check_v_.colwise() += from.v;
-    check_x_.noalias() = (h_ * h_) * a_.lazyProduct(tables_.check_twice.template rightCols<kStages>());
-    check_x_.noalias() += (h_ * from.v).lazyProduct(inner.template rightCols<kStages>());
-    check_x_.colwise() += from.x;
-    const auto outcome = checks_.evaluate(kStages, check_x_.data(), check_v_.data());
-    if (outcome == RayField<D>::Outcome::not_finite) return Verdict::not_finite;
-    if (outcome == RayField<D>::Outcome::singular) return Verdict::singular;
+  Verdict check(const State& from) {
+    v_rows_.noalias() = h_ * rows_.check_once.lazyProduct(a_);
+    v_rows_.rowwise() += from.v.transpose();
+    x_rows_.noalias() = (h_ * h_) * rows_.check_twice.lazyProduct(a_);
+    x_rows_.noalias() += rows_.check.lazyProduct((h_ * from.v).transpose());
+    x_rows_.rowwise() += from.x.transpose();
+    check_x_ = x_rows_.transpose();
+    check_v_ = v_rows_.transpose();
+    const Outcome outcome = checks_.evaluate(kStages, check_x_.data(), check_v_.data());
+    if (outcome == Outcome::not_finite) return Verdict::not_finite;
+    if (outcome == Outcome::singular) return Verdict::singular;
     if (!normals_agree(from)) return Verdict::folded;
 
-    curvature = std::sqrt(a_.colwise().squaredNorm().maxCoeff());
+    curvature = std::sqrt(a_.rowwise().squaredNorm().maxCoeff());
     const Index last = kStages - 1;
     end_x_ = check_x_.col(last);
     end_v_ = check_v_.col(last);
     off_surface = checks_.value.col(last).norm();
     lift = checks_.normal_velocity.col(last).norm();
 
-    Eigen::Matrix<double, D, Tables::kChecks> defect(end_x_.size(), Tables::kChecks);
-    defect.noalias() = a_.lazyProduct(tables_.check_value);
-    defect.col(0) -= from.acceleration;
-    defect.template rightCols<kStages>() -= checks_.acceleration.leftCols(kStages);
-    const Eigen::Matrix<double, D, 3> moment = defect.lazyProduct(tables_.defect_moment.transpose());
-    const double m0 = moment.col(0).norm();
-    const double m1 = moment.col(1).norm();
+    Eigen::Matrix<double, Tables::kChecks, D> defect(static_cast<Index>(Tables::kChecks), end_x_.size());
+    defect.noalias() = rows_.check_value.lazyProduct(a_);
+    defect.row(0) -= from.acceleration.transpose();
+    defect.template bottomRows<kStages>() -= checks_.acceleration.leftCols(kStages).transpose();
+    const Eigen::Matrix<double, 3, D> moment = tables_.defect_moment.lazyProduct(defect);
+    const double m0 = moment.row(0).norm();
+    const double m1 = moment.row(1).norm();
     const double bend = std::max(1e-2, curvature * h_);
     // What becomes of a defect by the end varies along the step about like exp(bend tau), to 1, bend / 2, bend^2 / 12
     // of P_0, P_1, P_2.
-    error_v = h_ * (m0 + bend / 2 * m1 + bend * bend / 12 * moment.col(2).norm()) + lift + std::abs(end_v_.norm() - 1);
+    error_v = h_ * (m0 + bend / 2 * m1 + bend * bend / 12 * moment.row(2).norm()) + lift + std::abs(end_v_.norm() - 1);
     error_x = h_ * h_ * (m0 + m1) / 2;
-    resolution = h_ * std::sqrt(defect.colwise().squaredNorm().maxCoeff());
+    resolution = h_ * std::sqrt(defect.rowwise().squaredNorm().maxCoeff());
     // Inside a step the curve keeps to the surface as well as it is resolved; a crease it would leave the surface at.
     constexpr double kClose = 1e-8;
     const double allowed = kClose * h_ + 1e-12 * end_x_.template lpNorm<Eigen::Infinity>() + error_x + h_ * lift;
@@ -199,11 +261,11 @@ class RayStep {
 
   /// From each point to the next the normal space turns by less than 60 degrees and keeps its orientation: no singular
   /// point, and no other sheet, was stepped over.
-  bool normals_agree(const RayState& from) {
+  bool normals_agree(const State& from) {
     weakest = std::numeric_limits<double>::infinity();
     Index k = nodes_.codim();
     const auto close = [&](const auto& a, const auto& b) {
-      if (k == 1) return a.col(0).dot(b.col(0)) > 0.5;
+      if (D == 3 || k == 1) return a.col(0).dot(b.col(0)) > 0.5;
       const Eigen::MatrixXd turn = a.transpose() * b;
       return turn.colwise().norm().minCoeff() > 0.5 && turn.determinant() > 0;
     };
@@ -217,11 +279,13 @@ class RayStep {
   }
 
   const Tables& tables_ = Tables::tables();
+  const RayRows& rows_ = RayRows::tables();
   RayField<D> nodes_;
   RayField<D> checks_;
   double h_ = 1;
-  NodeMatrix a_, x_, v_, before_, check_x_, check_v_;
-  NodeMatrix legendre_;  // d x kStages: the last attempt's acceleration
+  NodeMatrix x_, v_, check_x_, check_v_;
+  NodeRows a_, next_, x_rows_, v_rows_;
+  NodeRows legendre_;  // a coefficient a row: the last attempt's acceleration
   VectorD end_x_, end_v_;
 };
 

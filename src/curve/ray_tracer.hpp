@@ -32,7 +32,10 @@ class RayTracer : public ExponentialMap::Backend {
     // Steps are as long as their errors allow. The resolution that the first term left out shows falls half as fast as
     // the step's error, and can be seen when that is rounding already.
     target_ = std::max(options.tolerance, kBestStep);
-    fine_ = std::max(kResolution, 1e-2 * std::sqrt(options.tolerance));
+    constexpr double kShare = 0.4;  // of the tolerance: its square root, since the error goes with the square
+    fine_ = std::max(kResolution, kShare * std::sqrt(options.tolerance));
+    // What the iteration for the nodes leaves is in no estimate: well below what is allowed.
+    step_.enough = std::max(kEpsilon, 1e-2 * options.tolerance);
   }
 
   ExponentialResult trace(const Vector& from, const Vector& direction, double length, const Context& context) override {
@@ -77,7 +80,8 @@ class RayTracer : public ExponentialMap::Backend {
   ExponentialResult follow(const Vector& from, const Vector& direction, double length, const Context& context) {
     ExponentialResult result;
     const Index evaluated = step_.num_evaluated();
-    state_ = {.x = from, .v = direction, .acceleration = {}, .normals = {}};
+    state_.x = from;
+    state_.v = direction;
     points_.clear();
     errors_.clear();
     transfers_.clear();
@@ -229,7 +233,7 @@ class RayTracer : public ExponentialMap::Backend {
     }
     errors_.push_back({step_.error_x, step_.error_v, 1});
     result.off_surface = std::max(result.off_surface, step_.off_surface);
-    const RayState from = state_;
+    const RayState<D> from = state_;
     step_.arrive(state_);
     if (with_fields_) {
       transfers_.push_back(jacobi_.transfer);
@@ -343,7 +347,7 @@ class RayTracer : public ExponentialMap::Backend {
     const double at_end = jacobi_.margin(h);
     if (at_end > kNear) return;
     if (!probe_) probe_.emplace(surface_);
-    RayState from = state_;
+    RayState<D> from = state_;
     RayJacobi<D> fields = jacobi_;
     const auto margin = [&](double t) {
       if (!(t > 0)) return 1.0;
@@ -355,7 +359,7 @@ class RayTracer : public ExponentialMap::Backend {
     result.conjugate_at = travelled_ + find_zero(margin, 0, 1, h, at_end);
   }
 
-  void add_points(const RayState& from, double h) {
+  void add_points(const RayState<D>& from, double h) {
     constexpr int kMost = 64;
     const int pieces = std::clamp(static_cast<int>(std::ceil(step_.curvature * h / kTurnShown)), 4, kMost);
     for (int i = 1; i < pieces; ++i) points_.push_back(step_.point(from, static_cast<double>(i) / pieces));
@@ -472,7 +476,7 @@ class RayTracer : public ExponentialMap::Backend {
   double fine_ = 0;
 
   // The ray so far.
-  RayState state_;
+  RayState<D> state_;
   double travelled_ = 0;
   double travelled_rest_ = 0;  // what rounding took from it
   double next_ = 0;            // step to try

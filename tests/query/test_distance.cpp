@@ -129,6 +129,20 @@ TEST(DistanceSolver, FallsBackOnPathsInMoreDimensionsAndInsideDomains) {
     const double chord = (points.col(j) - points.col(0)).norm();
     EXPECT_NEAR(on_sphere.distance(j), 2 * std::asin(std::min(1.0, chord / 2)), 1e-9);
   }
+  // Two equations: a flat torus rolls out to the plane.
+  const Surface torus = parse_surface("x1^2+x2^2=1; x3^2+x4^2=0.36");
+  const auto place = [](double a, double b) {
+    return Vector(Eigen::Vector4d(std::cos(a), std::sin(a), 0.6 * std::cos(b), 0.6 * std::sin(b)));
+  };
+  Points angles(2, 4);
+  angles << 0.3, 2, -1.5, -3, 0.5, -1.4, 2.6, 3;
+  Points around(4, 4);
+  for (Index j = 0; j < 4; ++j) around.col(j) = place(angles(0, j), angles(1, j));
+  const Distances on_torus = DistanceSolver(torus, place(0, 0)).at(around);
+  for (Index j = 0; j < 4; ++j) {
+    EXPECT_NEAR(on_torus.distance(j), std::hypot(angles(0, j), 0.6 * angles(1, j)), 1e-9) << j;
+    EXPECT_NEAR(std::abs(on_torus.departure(1, j)), std::abs(angles(0, j)) / on_torus.distance(j), 1e-9) << j;
+  }
   const Surface half = parse_surface("x^2+y^2+z^2=1", {.domain = {"z >= 0"}});
   const Distances on_half =
       DistanceSolver(half, Vector(Eigen::Vector3d(0.8, 0, 0.6))).at(Vector(Eigen::Vector3d(0, 0.8, 0.6)));

@@ -170,6 +170,50 @@ TEST(LogMap, KnowsHowTheLengthChangesWithParameters) {
               1e-12);
 }
 
+/// Closed forms to 1e-12, which differences of lengths do not reach: along meridians L is an integral over the angle.
+TEST(LogMap, KnowsDerivativesToRounding) {
+  // On a torus's meridian L = r (b - a), and R moves it as a whole.
+  const auto on_torus = [](double u) { return Vector(Eigen::Vector3d(1 + 0.4 * std::cos(u), 0, 0.4 * std::sin(u))); };
+  const std::string torus = "(x^2+y^2+z^2+R^2-r^2)^2 = 4R^2(x^2+y^2)";
+  const LogMapResult round =
+      log_map(parse_surface(torus, {.parameters = {{"R", 1}, {"r", 0.4}}}), on_torus(0.3), on_torus(1.9));
+  const auto of_torus = parse_function(torus, {.variables = {"x", "y", "z", "R", "r"}});
+  const Vector by_radii = length_derivative(*of_torus, round.curve, Eigen::Vector2d(1, 0.4));
+  EXPECT_NEAR(by_radii(1), 1.6, 1e-12);
+  // Its ends move along the normals, by cos u of them: the rest of R's motion is along the curve.
+  EXPECT_NEAR(by_radii(0), std::sin(1.9) - std::sin(0.3), 1e-12);
+
+  // On an ellipse (cos t, c sin t): d/dc of the integral of |x'|, less what ends at fixed t move along the curve.
+  const double c = 0.5;
+  const auto on_ellipse = [&](double t) { return Vector(Eigen::Vector3d(std::cos(t), 0, c * std::sin(t))); };
+  const double begin = 0.2;
+  const double end = 1.3;
+  const std::string ellipsoid = "x^2+y^2+z^2/c^2 = 1";
+  const LogMapResult meridian =
+      log_map(parse_surface(ellipsoid, {.parameters = {{"c", c}}}), on_ellipse(begin), on_ellipse(end));
+  const auto of_ellipsoid = parse_function(ellipsoid, {.variables = {"x", "y", "z", "c"}});
+  const auto speed = [&](double t) { return std::hypot(std::sin(t), c * std::cos(t)); };
+  const auto along = [&](double t) { return c * std::cos(t) * std::sin(t) / speed(t); };  // of (0, 0, sin t)
+  const int pieces = 2000;                                                                // Simpson's rule
+  double integral = 0;
+  double length = 0;
+  for (int i = 0; i <= pieces; ++i) {
+    const double t = begin + (end - begin) * i / pieces;
+    const double weight = (i == 0 || i == pieces ? 1 : (i % 2 == 1 ? 4 : 2)) * (end - begin) / (3 * pieces);
+    integral += weight * c * std::cos(t) * std::cos(t) / speed(t);
+    length += weight * speed(t);
+  }
+  EXPECT_NEAR(meridian.length, length, 1e-12);
+  EXPECT_NEAR(length_derivative(*of_ellipsoid, meridian.curve, Vector(Vector::Constant(1, c)))(0),
+              integral - (along(end) - along(begin)), 1e-12);
+  // By the ends it is the tangents there.
+  const auto tangent = [&](double t) {
+    return Eigen::Vector3d(Eigen::Vector3d(-std::sin(t), 0, c * std::cos(t)) / speed(t));
+  };
+  EXPECT_LT((Eigen::Vector3d(meridian.direction) - tangent(begin)).norm(), 1e-12);
+  EXPECT_LT((Eigen::Vector3d(meridian.arrival) - tangent(end)).norm(), 1e-12);
+}
+
 TEST(LogMap, SpeaksOfPointsWithoutAWay) {
   const Surface sphere = test::unit_sphere();
   const Vector p = Eigen::Vector3d(1, 0, 0);
