@@ -61,8 +61,11 @@ const UnrolledNeighbour<D, Scalar>& best_of(const std::vector<UnrolledNeighbour<
 template <int D, class Scalar>
 Arrival<D, Scalar> arrival_from_one(const std::vector<UnrolledNeighbour<D, Scalar>>& neighbours, Index surface_dim) {
   const UnrolledNeighbour<D, Scalar>& first = best_of(neighbours);
+  // Where the ray through y passes close to x, the front there is a circle about its source to good accuracy. Far
+  // beside it only the triangle inequality u(y) + |z| is safe.
   constexpr Scalar kNearRay = 0.9;  // cosine
   if (surface_dim > 1 && first.along > kNearRay * first.length) {
+    // From the source as y sees it, at z - u g, to x.
     const SmallVector<D, Scalar> ray = first.distance * first.gradient - first.position;
     return {first.estimate, ray / ray.norm(), false, first.source};
   }
@@ -70,6 +73,7 @@ Arrival<D, Scalar> arrival_from_one(const std::vector<UnrolledNeighbour<D, Scala
       *std::min_element(neighbours.begin(), neighbours.end(),
                         [](const auto& a, const auto& b) { return a.distance + a.length < b.distance + b.length; });
   const SmallVector<D, Scalar> direction = y.length > 0 ? SmallVector<D, Scalar>(-y.position / y.length) : y.gradient;
+  // On a curve (n = 1) one neighbour is all there is on the side of the source.
   return {y.distance + y.length, direction, surface_dim == 1, y.source};
 }
 
@@ -78,6 +82,7 @@ Arrival<D, Scalar> arrival_from_one(const std::vector<UnrolledNeighbour<D, Scala
 template <int D, class Scalar>
 bool surrounds(const UnrolledNeighbour<D, Scalar>& left, Scalar miss_left, const UnrolledNeighbour<D, Scalar>& right,
                Scalar miss_right) {
+  // t: where between the two the ray through x starts. The front there must still lie behind x.
   const Scalar t = miss_left / (miss_left - miss_right);
   return miss_left > miss_right && left.along + t * (right.along - left.along) > 0;
 }
@@ -88,6 +93,8 @@ Arrival<D, Scalar> arrival_between(const UnrolledNeighbour<D, Scalar>& left, Sca
                                    const UnrolledNeighbour<D, Scalar>& right, Scalar miss_right) {
   using Vec = SmallVector<D, Scalar>;
   constexpr Scalar kHalf = 0.5;
+  // z(t) = z_left + t edge, v(t) = v0 + t rise + t (1 - t) bend: the interpolation of v in ArrivalSolver, on this
+  // segment.
   const Vec edge = right.position - left.position;
   const Scalar edge2 = edge.squaredNorm();
   const Scalar v0 = kHalf * left.distance * left.distance;
@@ -106,6 +113,7 @@ Arrival<D, Scalar> arrival_between(const UnrolledNeighbour<D, Scalar>& left, Sca
     const Scalar per_length = 1 / length;
     const Scalar along = z.dot(edge) * per_length;
     const Scalar curvature = (edge2 - along * along) * per_length;  // of |z(t)|
+    // No curvature: x lies on the line through both neighbours. u = 0: z(t) is the source. Then no step is defined.
     if (settled || step == kMostSteps || !(curvature > 0) || !(u > 0)) {
       return {u + length, length > 0 ? Vec(-per_length * z) : left.gradient, true, left.source};
     }
@@ -113,8 +121,11 @@ Arrival<D, Scalar> arrival_between(const UnrolledNeighbour<D, Scalar>& left, Sca
     const Scalar slope = (rise + bend * (1 - 2 * t)) * per_u;  // of sqrt(2 v(t)), then its second derivative
     const Scalar bending = -(2 * bend + slope * slope) * per_u;
     const Scalar third = -3 * (slope * bending * per_u + along * curvature * per_length);
+    // v(t) need not be convex. Half of the curvature of |z| alone still makes it a step down.
     const Scalar per_second = 1 / std::max(curvature + bending, kHalf * curvature);
     const Scalar newton = (slope + along) * per_second;
+    // Chebyshev's factor on Newton's step, kept within 1/2 .. 2 far from the minimum, where the series behind it is no
+    // guide.
     const Scalar more = std::clamp(1 + kHalf * newton * third * per_second, kHalf, Scalar{2});
     const Scalar next = std::clamp(t - newton * more, Scalar{0}, Scalar{1});
     settled = std::abs(next - t) < kShort;
@@ -237,6 +248,7 @@ Arrival<D> ArrivalSolver<D, K>::one_sided() const {
 template <int D, int K>
 std::optional<Arrival<D>> ArrivalSolver<D, K>::solve() {
   frame_.set(x_.normals);
+  // n = 2 unrolls only the two neighbours it chooses, unrolling being most of the work; n = 1 and n >= 3 need all.
   constexpr bool kDynamic = D == Eigen::Dynamic;
   if constexpr (kDynamic || D - K == 2) {
     if (surface_dim() == 2) return solve_on_surface();
@@ -255,6 +267,7 @@ template <int D, int K>
 std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
   const Index k = codim();
   UnrolledNeighbour<D> first;
+  // Every turn returns or drops a candidate that no edge joins to x.
   while (!candidates_.empty()) {
     const std::size_t best = best_candidate();
     if (!unroll(candidates_[best], first)) {
@@ -272,6 +285,7 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       if (gradient.dot(branch) < kMinBranchCosine) continue;
       const double miss = frame_.cross(gradient, y.chord);
       // Those beside or ahead of x only where nobody is behind.
+      // Squared with its sign: compared with kBehind |chord| without a root for each candidate.
       const double along2 = y.along * std::abs(y.along);
       if (along2 < -kBehind * kBehind * y.chord2) continue;
       const double measure = std::abs(miss) + (along2 < kBehind * kBehind * y.chord2 ? 4 * std::sqrt(y.chord2) : 0.0);
@@ -302,10 +316,12 @@ std::optional<Arrival<D>> ArrivalSolver<D, K>::solve_on_surface() {
       const double miss_right = miss(pair[1]);
       if (surrounds(pair[0], miss_left, pair[1], miss_right)) {
         Arrival<D> arrival = arrival_between(pair[0], miss_left, pair[1], miss_right);
+        // Where the fronts of two sources meet, the pair may be of both: the nearest neighbour tells.
         arrival.source = first.source;
         return lift(arrival);
       }
     }
+    // x lies beside all rays: at an edge of the surface, on the cut locus, or come too early.
     unroll_all();
     return one_sided();
   }
@@ -323,11 +339,13 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   const double start = gradient.norm();
   if (!(start > 0)) return one_sided();
   const Vec ray = gradient / start;
+  // cos^2 / |z|^2: who is near and straight behind counts most.
   const auto weight = [&](const UnrolledNeighbour<D>& y) {
     const double behind = -y.position.dot(ray);
     if (!(behind > 0) || y.gradient.dot(first.gradient) < kMinBranchCosine) return 0.0;
     return behind * behind / (y.length * y.length * y.length * y.length);
   };
+  // Bounds by the triangle inequality, u_i - |z_i| <= u <= u_i + |z_i|.
   double lower = 0;
   double upper = std::numeric_limits<double>::infinity();
   double sum = 0;
@@ -343,6 +361,8 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
     lower = std::max(lower, y.distance - y.length);
     upper = std::min(upper, y.distance + y.length);
   }
+  // By Cauchy and Schwarz |side|^2 <= spread * sum, with equality where all neighbours lie off the ray by the same
+  // vector. Near that, nothing holds the direction from the other side.
   constexpr double kOneSided = 0.6;
   if (!(side.squaredNorm() < kOneSided * spread * sum)) return one_sided();
 
@@ -351,6 +371,7 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   // Keeps the directions that no neighbour tells about where they were.
   constexpr double kRidge = 1e-3;
   const double ridge = 0.25 * kRidge * spread / static_cast<double>(n);
+  // The start is right to first order in |z|, and the residual is quadratic in G.
   constexpr int kSteps = 2;
   for (int step = 0; step < kSteps; ++step) {
     Matrix normal = ridge * Matrix::Identity(n, n);
@@ -361,6 +382,7 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
       if (!(w > 0)) continue;
       const double residual =
           v - 0.5 * y.distance * y.distance + 0.5 * (gradient + y.distance * y.gradient).dot(y.position);
+      // Derivative of the residual with respect to G. The first k entries of all vectors are zero in the frame of x.
       const Coordinates row = (gradient + 0.5 * y.position).tail(n);
       normal.template selfadjointView<Eigen::Lower>().rankUpdate(row, w);
       right += w * residual * row;
@@ -371,6 +393,7 @@ Arrival<D> ArrivalSolver<D, K>::solve_by_votes() const {
   }
   const double distance = gradient.norm();
   if (!(distance > 0)) return one_sided();
+  // Neighbours on both sides of a kink can contradict each other: then lower > upper, and the upper bound is kept.
   return {std::clamp(distance, std::min(lower, upper), upper), frame_.lift(Vec(gradient / distance)), true,
           first.source};
 }

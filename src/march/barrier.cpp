@@ -1,3 +1,6 @@
+// Where a march stopped: a reached cell next to a valid cell that was not reached, although their points are
+// neighbours. u(y) + |y - x| is a lower bound of the ways to x past such a cell y; the least tells which one matters. A
+// cell costs a block of 3^d look-ups, if it can still be the least.
 #include "march/barrier.hpp"
 
 #include <cmath>
@@ -17,6 +20,7 @@ std::optional<Barrier> find_barrier(const SurfaceCells& cells, const DistanceFie
     if (!reached(i)) continue;
     const double length = field.distance(i) + (cells.point(i) - x).norm();
     if (length >= least) continue;
+    // One unreached neighbour is enough: of the place beyond, only the turn of the normals is told.
     for (const Index j : stencil.block(cells.grid(), cells.grid().cell(i))) {
       if (!cells.valid(j) || reached(j)) continue;
       least = length;

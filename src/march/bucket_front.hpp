@@ -35,6 +35,8 @@ class BucketFront {
   /// Adds the cell, or gives it a new key.
   void set(Index cell, float key) {
     const auto at = static_cast<std::uint32_t>(cell) + kBuckets;
+    // A key below the current bucket goes into it, one beyond the reach into the last: only the order suffers. The
+    // order within kReach is what keeps a ring of kBuckets unambiguous.
     const std::uint32_t bucket =
         std::clamp(static_cast<std::uint32_t>(key * per_width_), current_, current_ + kReach) % kBuckets;
     if (places_[at].bucket == bucket) return;
@@ -44,6 +46,8 @@ class BucketFront {
 
   /// Takes out a cell of the first bucket.
   Index pop() {
+    // The next occupied bucket of the ring: in the rest of the current word, in the other word, or, once round, in the
+    // part of the current word before the start.
     const std::uint32_t start = current_ % kBuckets;
     const std::uint32_t word = start / 64;
     const std::uint64_t ahead = occupied_[word] >> (start % 64);
@@ -84,6 +88,7 @@ class BucketFront {
     const Place place = places_[at];
     places_[place.next].previous = place.previous;
     places_[place.previous].next = place.next;
+    // Only the bucket's own entry is left of its ring.
     if (place.next == place.previous && place.next == place.bucket) {
       occupied_[place.bucket / 64] &= ~(std::uint64_t{1} << (place.bucket % 64));
     }

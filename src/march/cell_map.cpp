@@ -1,3 +1,6 @@
+// What marches over the same complete cells share. The index of neighbours always pays. Charts do for surfaces (d - k =
+// 2) whose cells are not too many and fit the limit of memory; without them a march works in double precision, about
+// three times as long.
 #include "march/cell_map.hpp"
 
 #include "core/memory_limit.hpp"

@@ -25,6 +25,7 @@ class CellSteps {
 
   CellSteps(const CellGrid& grid, Over over)
       : grid_(grid), over_(over), d_(static_cast<std::size_t>(grid.dim())), neighbour_(d_) {
+    // order_ stays empty: around() then steps across single faces.
     if (grid.dim() > kMostDiagonalDim && over == Over::faces) return;
     // Offsets with fewer steps first, so that what an offset is reached over has been looked at before it.
     const auto size = static_cast<std::size_t>(block_size(grid.dim()));
@@ -45,6 +46,7 @@ class CellSteps {
     }
     for (const std::size_t code : order_) {
       std::uint8_t& reached = reached_[code];
+      // Marked before the cell is looked up: where it is absent, nothing is reached over it either.
       reached = over_ == Over::corners || num_steps(code) == 0 || is_reached_over_a_face(code) ? 1 : 0;
       if (reached == 0) continue;
       for (std::size_t a = 0; a < d_; ++a) neighbour_[a] = centre[a] + step(code, a);

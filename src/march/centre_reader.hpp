@@ -93,6 +93,8 @@ class CentreReader {
       if (!is_reached(j) || !(field_.distance(j) < here)) continue;
       const double step = (grid_.centre(i) - grid_.centre(j)).norm();
       const double fall = here - field_.distance(j);
+      // Dijkstra: no neighbour falls by more than its step, and only those the walk can have come over by all of it.
+      // Axis: the steepest neighbour.
       const double merit = field_.method == MarchMethod::dijkstra ? fall - step : fall / step;
       if (merit <= most) continue;
       most = merit;

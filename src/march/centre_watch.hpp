@@ -27,6 +27,7 @@ class CentreWatch {
   void settled(std::span<const std::int32_t> cell) {
     if (!reader_) return;
     for (std::size_t a = 0; a < cell_.size(); ++a) {
+      // Only cells of the block around the target are read there.
       if (std::abs(cell[a] - cell_[a]) > 1) return;
     }
     distance_ = reader_->distance(*target_);

@@ -1,3 +1,11 @@
+// The march of convergent.cpp for surfaces (d - k = 2) over complete cells, in numbers of two dimensions. Each cell has
+// a chart of its tangent plane; the edges from its neighbours are unrolled into it beforehand (surface_charts.hpp). A
+// visit turns the neighbours' gradients into the chart, kLanes at a time, and solves the same update as ArrivalSolver.
+// Lengths are in cells, in single precision: below the error of a march by far.
+//
+// The front hands cells out by buckets of 1 / kBucketsPerCell cells, so they are settled in nearly, not exactly, the
+// order of their distances. A cell's `offered2` is also its state: kNoOffers once it is settled, has been delayed, or
+// was reached by the edge from the source itself. One source, no radius; a goal bounds how far it goes.
 #include "march/chart_march.hpp"
 
 #include <algorithm>
@@ -42,6 +50,7 @@ void ChartMarch::run(const SurfacePoint& source, std::span<const Index> around_s
   reached_ = 0;
   end_ = kInfinity;
   std::fill(state_.begin(), state_.end(), Cell{kInfinity, {0, 0}, kInfinity});
+  // The cell past the last, which links are filled up with. It takes no offers, so it never enters the front.
   state_.back().offered2 = kNoOffers;
   front_.clear();
   for (const Index i : around_source) offer_direct(i);
@@ -57,6 +66,7 @@ void ChartMarch::visit(Index i) {
   gather(links);
   Cell& here = cell(i);
   const bool waited = here.offered2 == kNoOffers;  // until nobody else came first, or for the source itself
+  // A delayed cell near the source may pass for a direct one: then the edge is the better answer as well.
   if (const auto direct = waited ? charts_.edge(source_, i, kDirectCells) : std::nullopt) {
     const auto& [length, direction] = *direct;
     for (std::size_t j = 0; j < links.count; ++j) {
@@ -67,6 +77,8 @@ void ChartMarch::visit(Index i) {
   }
   const std::optional<Arrival<2, float>> arrival = solve(links);
   if (!arrival) return;
+  // Beside all rays, the distance is known from one neighbour only. The cell waits once behind that longer estimate:
+  // cells still in the front may enclose it.
   if (arrival->enclosed || waited) {
     settle(i, *arrival, links);
   } else {
@@ -78,6 +90,7 @@ void ChartMarch::visit(Index i) {
 /// The source offers cell j its distance, when j is near enough.
 void ChartMarch::offer_direct(Index j) {
   Cell& there = cell(j);
+  // Not a cell, or one that has all it needs.
   if (j == charts_.num_cells() || there.offered2 == kNoOffers) return;
   const auto direct = charts_.edge(source_, j, kDirectCells);
   if (!direct) return;
@@ -99,6 +112,7 @@ void ChartMarch::gather(const ChartLinks& links) {
     const Floats y = load(links.position[1] + j);
     const Floats cosine = load(links.cosine + j);
     const Floats sine = load(links.sine + j);
+    // The gradient at y, carried along the edge into this chart.
     const Floats gx = cosine * there_x - sine * there_y;
     const Floats gy = sine * there_x + cosine * there_y;
     const Floats along = -(gx * x + gy * y);
@@ -196,6 +210,7 @@ void ChartMarch::settle(Index i, const Arrival<2, float>& arrival, const ChartLi
 void ChartMarch::watch(Index i, float distance) {
   if (std::ranges::find(goal_.around_end, i) == goal_.around_end.end()) return;
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  // The edge's length is the same from either end; its direction is not used.
   if (const auto last = charts_.edge(*goal_.end, i, kAnywhere)) end_ = std::min(end_, distance + last->first);
 }
 
@@ -203,6 +218,7 @@ void ChartMarch::watch(Index i, float distance) {
 bool ChartMarch::leads_astray(Index i, float distance) const {
   if (!(goal_.longest < std::numeric_limits<double>::infinity())) return false;
   const Eigen::Map<const Vector> end(goal_.end->x, charts_.cells().dim());
+  // The straight line bounds the rest of the way from below, so no path that may be wanted is lost.
   return distance + (charts_.cells().point(i) - end).norm() / charts_.cell_size() > goal_.longest;
 }
 
@@ -225,6 +241,7 @@ void march_in_charts(const MarchTask& task, const SurfaceCharts& charts, Distanc
   field.gradient.setZero(cells.dim(), n);
   field.nearest_source.assign(static_cast<std::size_t>(n), -1);
   for (Index i = 0; i < n; ++i) {
+    // From cells to model units; infinity stays infinity.
     field.distance(i) = h * static_cast<double>(march.distance(i));
     if (!(march.distance(i) < kInfinity)) continue;
     ++field.num_reached;
@@ -232,6 +249,7 @@ void march_in_charts(const MarchTask& task, const SurfaceCharts& charts, Distanc
     field.gradient.col(i) = (charts.axes(i) * march.gradient(i)).cast<double>();
   }
   if (!task.options.target) return;
+  // Read from the finished field as any other point would be, in double precision.
   field.target_distance = with_dimensions(cells.dim(), cells.codim(), [&]<int D, int K>() {
     return FieldReader<D, K>(cells, field, task.map).distance(*goal.end);
   });

@@ -1,3 +1,16 @@
+// Distances on the surface itself: the eikonal equation |grad_S u| = 1 at the projected points of the cells, upwind
+// over all 3^d - 1 neighbours that an edge on one smooth sheet joins (edge.hpp). Cells are settled in the order of
+// their distances, as in fast marching (Sethian 1996; on triangulated surfaces Kimmel and Sethian 1998). Their update
+// (arrival.hpp) carries gradients along with distances, which makes it second order in the cells' size.
+//
+// Three cases of a cell that comes first:
+// 1. It lies within kDirectCells of a source: its distance is the length of the edge from there, for the front is
+//    bent most strongly near its source.
+// 2. Its neighbours lie on both sides of its ray: it is solved for, and settled.
+// 3. They do not. It waits once, behind the longer way over an edge, for cells still in the front to enclose it. At an
+//    edge of the surface and on the cut locus none comes, and it is settled with that.
+// Cells are left infinite where no edge reaches them. Lazy cells grow as the front passes. Cost: O(3^d) edges a cell at
+// most, in fact mostly two that are unrolled where d - k = 2, and O(log N) for the heap.
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -86,6 +99,7 @@ class ConvergentMarch {
     }
     if (direct) {
       const Index s = field_.source(i);
+      // Made once more rather than stored for all cells: it succeeded when it was offered.
       const auto [length, direction] = *direct_from_source<D, K>(field_.field(), s, point(i), direct_radius_, frame_);
       settle(i, length, direction, s);
       for (const Index j : waiting_) offer_direct(j, s);
@@ -94,6 +108,7 @@ class ConvergentMarch {
       if (!arrival) return false;
       if (!arrival->enclosed && !is_delayed(i)) {
         flags(i) |= kDelayed;
+        // set(), not offer(): the key it waits with may be larger than the one it came first with.
         field_.set(i, arrival->distance, arrival->source);
         return false;
       }
@@ -113,6 +128,8 @@ class ConvergentMarch {
     if (is_direct(j) && field_.source(j) == s) return;
     const auto direct = direct_from_source<D, K>(field_.field(), s, point(j), direct_radius_, frame_);
     if (!direct) return;
+    // The edge from the source replaces what was estimated over other cells from the same source, even where that is
+    // less.
     const bool same_source = field_.front().contains(j) && field_.source(j) == s;
     if (same_source) {
       field_.set(j, direct->first, s);
@@ -132,6 +149,7 @@ class ConvergentMarch {
     const double u = field_.distance(i);
     const double along = Map(field_.gradient(i), d_).dot(chord);
     const double chord2 = chord.squaredNorm();
+    // A delayed cell lies beside the rays: a circle about the source would promise it too little, the edge does not.
     const double estimate2 = is_delayed(j) ? std::pow(u + std::sqrt(chord2), 2) : circular_estimate2(u, along, chord2);
     if (!field_.front().contains(j)) {
       prefetch(j);
@@ -141,11 +159,13 @@ class ConvergentMarch {
     const double estimate = std::sqrt(estimate2);
     if (leads_astray(j, estimate)) return;
     field_.set(j, estimate, s);
+    // It may have had a direct estimate from another source, which this one beats.
     flags(j) &= static_cast<std::uint8_t>(~kDirect);
   }
 
   /// Is a path through cell j, that far from its source, too long before it reaches the target.
   [[nodiscard]] bool leads_astray(Index j, double distance) const {
+    // The straight line bounds the rest of the way from below.
     return longest_ < std::numeric_limits<double>::infinity() && distance + (cells_.point(j) - end_).norm() > longest_;
   }
 

@@ -1,3 +1,10 @@
+// The way from a point down a distance field to the nearest source: x' = -grad u, with |grad u| = 1, in steps of half a
+// cell, each followed by a projection onto the surface. Gradients are read at x by the update that the march itself
+// makes, so they exist at any point. Two-step Adams-Bashforth, started and restarted by Heun's method: second order, as
+// the field. Where the field has no single gradient (beside an edge of the surface, on the cut locus) the way goes to
+// the projected point of a cell further down instead; fields of other methods have no gradients and go so everywhere.
+// The last piece is a straight line from the source. Fields between centres give the path on the grid that the paper
+// shows.
 #include "taut/march/march.hpp"
 
 #include <cmath>
@@ -44,6 +51,7 @@ class Descent {
     points_.assign(target.data(), target.data() + d_);
     x_ = target;
     normals_ = target_normals;
+    // Every point's distance must be less than `below`, the distance before it: no way turns back on itself.
     double below = std::numeric_limits<double>::infinity();
     while (!at_source()) {
       if (field_.method == MarchMethod::convergent && follow_gradient(below)) continue;
@@ -78,6 +86,7 @@ class Descent {
     if (!reading_ || !(reading_->arrival.distance < below)) return false;
     const SmallVector<D> gradient = reading_->arrival.gradient;
     const bool smooth = follows_on_ && gradient.dot(last_gradient_) > kSmooth;
+    // Only the direction counts: look_along() gives the step its length.
     bool taken = smooth && step_along(1.5 * gradient - 0.5 * last_gradient_, below);
     if (!taken) {
       const std::optional<Reading<D>> ahead = look_along(gradient);
@@ -99,6 +108,7 @@ class Descent {
   [[nodiscard]] bool step_along(const SmallVector<D>& direction, double& below) {
     const double distance = reading_->arrival.distance;
     const std::optional<Reading<D>> next = look_along(direction);
+    // On a smooth field a step lowers u by its own length, but for the turn of the gradient.
     if (!next || !(next->arrival.distance < distance - kLeastDescent * kStep * cells_.grid().size())) return false;
     std::swap(x_, there_);
     std::swap(normals_, normals_there_);
@@ -113,6 +123,7 @@ class Descent {
     const double h = cells_.grid().size();
     Eigen::MatrixXd point = y;
     const auto converged = project_to_surface(
+        // A step that leaves the surface by a cell has lost it: then the way goes over a cell's point.
         *evaluator_, d_, k_, point, {.tolerance = kNearness * h, .max_steps = 5, .max_distance = h}, &normals);
     y = point;
     return converged(0);
@@ -173,7 +184,9 @@ Points descend_over(const Surface& surface, const SurfaceCells& cells, const Cel
     throw InvalidArgument("descend: the target must be a finite point in dimension " + std::to_string(surface.dim()));
   }
   const Vector normals = normals_at(surface, target).col(0);
+  // A singular target has no tangent plane to read the field in.
   if (!normals.allFinite()) return Points(surface.dim(), 0);
+  // Both walk from the target; paths are told from the source.
   if (field.at_centres) return descend_centres(cells.grid(), field, target).rowwise().reverse();
   Points down;
   with_dimensions(surface.dim(), surface.codim(),

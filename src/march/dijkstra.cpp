@@ -1,3 +1,7 @@
+// Dijkstra's shortest walks, which the paper names beside fast marching: over the projected points of cells that touch,
+// where one smooth sheet explains the edge between them, or over the centres of all cells of an envelope. A walk has
+// the 3^d - 1 directions of a block only, so its length is too large by a part that smaller cells do not take away.
+// Kept for comparison; starts come from the convergent march. Cost: O(3^d) edges a cell and the heap.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -70,6 +74,7 @@ void run_between_centres(const MarchTask& task, DistanceField& field) {
     const Index i = growing.pop();
     growing.settle(i, distance, growing.source(i));
     grid.neighbours(i, neighbours);
+    // Centres lie on a grid: the length of a step depends on its offset alone, whatever the surface does.
     for (std::size_t m = 0; m < neighbours.size(); ++m) {
       const Index j = neighbours[m];
       if (j != CellGrid::kNone && !growing.settled(j)) growing.offer(j, distance + lengths[m], growing.source(i));

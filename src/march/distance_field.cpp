@@ -1,3 +1,5 @@
+// Reads a finished field at any points (d x n), a fault in one point staying its own: NaN where a point is not finite
+// or singular, infinity where no reached cell lies around it.
 #include "taut/march/march.hpp"
 
 #include <limits>

@@ -1,3 +1,13 @@
+// Starts for all ways between two points from a table instead of two fields. With u_l the marched distance from
+// landmark l, u_l(p) + u_l(q) >= d(p, q), and it is hardly more where l lies beside a shortest path: landmarks with
+// small sums name the ways. Each is then walked down the landmark's distances, cell by cell, from both ends.
+//
+// A way with arms a and b to a point that lies e beside it is longer by e^2 / 2 (1 / a + 1 / b), to leading order. With
+// e of kOffset spacings this is what the sum of the best landmark of a way may exceed its length by. Whether two
+// landmarks stand for one way is a matter of how far they lie apart (kSameWay...), and in doubt of the walk itself.
+//
+// Marched distances of coarse cells can be too long across a narrow place. A landmark beyond it has reached both sides
+// by another front: the least u_m(x) + u_m(l) over landmarks m near the ways (a shortcut) mends that.
 #include "march/distance_table.hpp"
 
 #include <algorithm>
@@ -90,6 +100,8 @@ void DistanceTable::choose_landmarks(Index count) {
     }
     if (num_landmarks() <= count) return;
     const double dim = static_cast<double>(cells_.dim() - cells_.codim());
+    // Their number falls with the power n = d - k of the spacing, roughly; 5 % at the least, so that it comes to an
+    // end.
     spacing_ *= std::max(1.05, std::pow(static_cast<double>(num_landmarks()) / static_cast<double>(count), 1 / dim));
   }
 }
@@ -117,6 +129,7 @@ void DistanceTable::link_cells() {
 void DistanceTable::fill(const Surface& surface, const Context& context) {
   const auto d = static_cast<std::size_t>(cells_.dim());
   const auto num_cells = static_cast<std::size_t>(cells_.num_cells());
+  // Shared by all marches of this table only.
   const std::shared_ptr<const detail::CellMap> map = detail::map_cells(cells_, context);
   const detail::SurfaceCharts* charts = map->charts.get();
   Context inner = context;
@@ -149,6 +162,7 @@ void DistanceTable::fill(const Surface& surface, const Context& context) {
         }
       }
     }
+    // Transposed: marches write a landmark's column, questions read a cell's row.
     for (std::size_t i = 0; i < num_cells * (d + 1); ++i) {
       float* row = table_.data() + i * landmarks_.size() + static_cast<std::size_t>(first);
       for (std::size_t l = 0; l < count; ++l) row[l] = columns[l * num_cells * (d + 1) + i];
@@ -236,7 +250,9 @@ void DistanceTable::walk(Index cell, std::size_t landmark, Way& way) const {
     Index next = CellGrid::kNone;
     for (const Index j : links) {
       const float there = row(j)[landmark];
+      // Distances fall strictly, so the walk ends: at the landmark, or in a hollow of rounding.
       if (!(there < here)) continue;
+      // The best next cell by Fermat's principle, not the lowest: else diagonal steps would always win.
       const double length = there * cells_.grid().size() + (cells_.point(j) - cells_.point(cell)).norm();
       if (length < least) {
         least = length;
@@ -253,6 +269,7 @@ void DistanceTable::walk(Index cell, std::size_t landmark, Way& way) const {
 DistanceTable::Way DistanceTable::way_to(std::size_t landmark, const View& from) const {
   Way way;
   Index cell = from.cell;
+  // A shortcut beat the march: first to the landmark it runs past, then on from there.
   if (from.distance[landmark] < from.marched[landmark]) {
     const std::size_t n = landmarks_.size();
     const auto length = [&](std::size_t m) { return from.marched[m] + between_[m * n + landmark]; };
@@ -263,6 +280,7 @@ DistanceTable::Way DistanceTable::way_to(std::size_t landmark, const View& from)
     cell = landmarks_[past];
     walk(from.cell, past, way);
     if (way.back() != cell) return {};
+    // The second walk begins with the same cell.
     way.pop_back();
   }
   walk(cell, landmark, way);
@@ -274,6 +292,7 @@ DistanceTable::Way DistanceTable::way_past(const View& from, const View& to, std
   Way there = way_to(landmark, from);
   const Way back = way_to(landmark, to);
   if (there.empty() || back.empty()) return {};
+  // The landmark's cell is in both halves.
   there.insert(there.end(), back.rbegin() + 1, back.rend());
   return there;
 }
@@ -327,7 +346,9 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
   for (std::size_t l = 0; l < landmarks_.size(); ++l) {
     const double a = from.distance[l];
     const double b = to.distance[l];
+    // Close to an end every way passes the same landmarks.
     if (!(std::min(a, b) > near_end) || !(a + b < kFar)) continue;
+    // What the place of the landmark beside the way may have added.
     const double detour = std::pow(kOffset * spacing_, 2) / 2 * (1 / a + 1 / b);
     if (a + b - detour <= (1 + options.excess) * shortest) passing.push_back({static_cast<float>(a + b), l});
   }
@@ -343,6 +364,7 @@ std::vector<StartPath> DistanceTable::start_paths(const VectorIn& p, const Vecto
     const Index landmark = landmarks_[candidate.landmark];
     const double off = distance_to(ways, landmark);
     if (off < kSurelySame * same) continue;
+    // Between surely the same and surely another: worth a walk, a few times.
     if (off < same && ++unsure > kMostUnsure) continue;
     Way way = way_past(from, to, candidate.landmark);
     if (way.empty()) continue;

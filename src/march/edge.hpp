@@ -72,6 +72,8 @@ bool make_edge(const SurfacePoint& y, const SurfacePoint& x, Index d, Index k, E
       normal_part_x += nx.dot(edge.chord) * nx;
       for (Index j = 0; j < k; ++j) cosine2 += std::pow(Map(x.normals + j * d, d).dot(ny), 2);
     }
+    // k - 1 of the angles may be 0; with all others 0, the largest one must have more than the same cosine as for k =
+    // 1.
     if (!(cosine2 > static_cast<double>(k - 1) + kMinNormalCosine * kMinNormalCosine)) return false;
     part2_y = edge.normal_part.squaredNorm();
     part2_x = normal_part_x.squaredNorm();
@@ -81,6 +83,7 @@ bool make_edge(const SurfacePoint& y, const SurfacePoint& x, Index d, Index k, E
   const double allowed = kMaxJump * parts + kMaxCurvatureChange * chord;
   if (part2_y + part2_x + 2 * product > allowed * allowed) return false;
   constexpr double kTiny = 1e-290;
+  // |N_y e| = c sin(angle of the chord with the tangent plane): s0^2 = |N_y e|^2 / c^2 and so on, to the order needed.
   const double bend = (2 * part2_y - product + 2 * part2_x) / (30 * chord2 + kTiny);
   edge.length = chord * (1 + bend * (1 + 2.7 * bend));
   edge.tangent_length = std::sqrt(std::max(chord2 - part2_y, kTiny));

@@ -81,6 +81,7 @@ class FieldReader {
       const std::int32_t source = field_.nearest_source[static_cast<std::size_t>(i)];
       solver_.add({cells_.point(i).data(), cells_.normals(i).data()}, field_.distance(i), &field_.gradient(0, i),
                   source);
+      // Neighbouring cells mostly have the same source: its edge is made once.
       if (source == tried) continue;
       tried = source;
       const auto direct = direct_from_source<D, K>(field_, source, x, kDirectCells * cells_.grid().size(), frame_);
@@ -88,6 +89,7 @@ class FieldReader {
         reading = {{direct->first, direct->second, true, source}, source};
       }
     }
+    // Near a source its own edge is the better number, as in the march.
     if (reading) return reading;
     if (const auto arrival = solver_.solve()) reading = {*arrival, -1};
     return reading;
@@ -98,6 +100,7 @@ class FieldReader {
     Index nearest = -1;
     double least = std::numeric_limits<double>::infinity();
     Edge<D> edge;
+    // By cells, not by length: the block is what step_down() sees as well.
     std::vector<std::int32_t> source_cell(cell_.size());
     cells_.grid().cell_of(Eigen::Map<const Vector>(x.x, d_), cell_);
     for (Index s = 0; s < field_.sources.cols(); ++s) {

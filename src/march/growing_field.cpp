@@ -1,3 +1,6 @@
+// The arrays of a field over cells that may still be coming. They grow by at least half of their size, so that growing
+// costs O(N) in all; memory is checked against the limit before each time. Between reports a march looks whether it has
+// been cancelled.
 #include "march/growing_field.hpp"
 
 #include <algorithm>
@@ -63,6 +66,7 @@ void GrowingField::finish(double target_distance) {
   if (gradients_) field_.gradient.conservativeResize(field_.gradient.rows(), n);
   field_.nearest_source.resize(static_cast<std::size_t>(n));
   for (Index i = 0; i < n; ++i) {
+    // What still waits in the front has a source but no distance.
     if (!settled(i)) field_.nearest_source[static_cast<std::size_t>(i)] = -1;
   }
   field_.target_distance = target_distance;

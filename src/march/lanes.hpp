@@ -34,6 +34,8 @@ inline unsigned bits(Ints comparison) {
 inline Floats inverse_sqrt(Floats x) {
   Ints guess;
   std::memcpy(&guess, &x, sizeof guess);
+  // Halving the bits halves the exponent; the constant makes the mantissa fit to a few per cent (Lomont 2003). Newton's
+  // steps square that error.
   guess = 0x5f375a86 - (guess >> 1);
   Floats y;
   std::memcpy(&y, &guess, sizeof y);
@@ -58,6 +60,7 @@ inline void transpose(Floats& a, Floats& b, Floats& c, Floats& d) {
 class Least {
  public:
   void take(Floats values, std::size_t at) {
+    // Of equal values the first stays, so that the outcome does not depend on what the lanes are filled up with.
     at_ = values < values_ ? all_lanes(static_cast<float>(at)) : at_;
     values_ = values < values_ ? values : values_;
   }

@@ -1,3 +1,6 @@
+// The entrance to all marches: checks the request, takes the normals at sources and target, and hands it to the method.
+// The convergent march of one source over mapped cells of a surface runs in charts, in single precision; several
+// sources, a radius, lazy cells and other dimensions take the march in double precision.
 #include "taut/march/march.hpp"
 
 #include <cmath>
@@ -44,6 +47,7 @@ DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, co
   if (sources.cols() == 0) throw InvalidArgument("no source given");
   DistanceField field;
   field.method = options.method;
+  // The paper's walk over an envelope runs between all centres, also of cells that the surface does not cross.
   field.at_centres =
       options.method == MarchMethod::axis || (options.method == MarchMethod::dijkstra && cells.num_layers() > 0);
   field.sources = sources;
@@ -54,6 +58,7 @@ DistanceField detail::march_over(const Surface& surface, SurfaceCells& cells, co
   context.check_cancelled();
   switch (options.method) {
     case MarchMethod::convergent:
+      // The march in charts knows neither a second source nor a radius.
       if (map != nullptr && map->charts && sources.cols() == 1 && std::isinf(options.radius)) {
         detail::march_in_charts(task, *map->charts, field);
       } else {

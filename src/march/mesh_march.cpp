@@ -63,10 +63,12 @@ double MeshMarch::over(int a, int b, int c) const {
   const Eigen::Vector3d to = mesh_.vertices.col(c) - mesh_.vertices.col(a);
   const double l = side.norm();
   if (!(l > 0)) return kInfinity;
+  // In the plane of the triangle: a = (0, 0), b = (l, 0), c = (cx, cy), and the source seen below ab at (sx, -sy).
   const double cx = to.dot(side) / l;
   const double cy = to.cross(side).norm() / l;
   const double sx = (distance_(a) * distance_(a) - distance_(b) * distance_(b) + l * l) / (2 * l);
   const double below = distance_(a) * distance_(a) - sx * sx;
+  // The two distances and the side form no triangle: they came round different ways.
   if (!(below >= 0)) return kInfinity;
   const double sy = std::sqrt(below);
   if (!(sy + cy > 0)) return kInfinity;
@@ -85,6 +87,7 @@ void MeshMarch::add_source(const VectorIn& x, const Context& context) {
     source_[static_cast<std::size_t>(v)] = number;
     open.emplace(distance, v);
   };
+  // Every triangle is looked at once a source: O(faces), less than the march.
   const Eigen::Vector3d p = x;
   Vector away(mesh_.faces.cols());
   Index nearest = 0;
@@ -107,6 +110,7 @@ void MeshMarch::add_source(const VectorIn& x, const Context& context) {
     if (count % 4096 == 0) context.check_cancelled();
     const auto [distance, v] = open.top();
     open.pop();
+    // An older entry of a vertex that came nearer since.
     if (distance > distance_(v)) continue;
     const auto i = static_cast<std::size_t>(v);
     for (std::size_t k = first_[i]; k < first_[i + 1]; ++k) {
@@ -116,6 +120,7 @@ void MeshMarch::add_source(const VectorIn& x, const Context& context) {
       const int c = face((at + 2) % 3);
       for (const auto& [known, wanted] : {std::pair(b, c), std::pair(c, b)}) {
         double found = distance + (mesh_.vertices.col(wanted) - mesh_.vertices.col(v)).norm();
+        // Distances from two sources have no common place to unfold from.
         if (source_[static_cast<std::size_t>(known)] == number) found = std::min(found, over(v, known, wanted));
         reach(wanted, found);
       }

@@ -35,6 +35,7 @@ class NeighbourIndex final : public AnyNeighbourIndex {
     for (Index axis = 0; axis < dim(); ++axis) {
       for (std::int32_t c = 0; c < side(axis); ++c) {
         for (std::int32_t near = c - 1; near <= c + 1; ++near) {
+          // Relative to the block of c - 1, the first of the three coordinates. Shifts round down, below zero as well.
           const std::int32_t block = (near >> side_bits(axis)) - ((c - 1) >> side_bits(axis));
           rows_[axis][c].places[block] |= places_at(near, axis);
         }
@@ -120,6 +121,7 @@ class NeighbourIndex final : public AnyNeighbourIndex {
   template <int Axis>
   void collect(Search& search, std::uint64_t wanted, std::uint64_t hash, std::vector<Index>& found) const {
     if constexpr (Axis < 0) {
+      // All axes chosen: one look-up, then the places wanted that hold a cell, a bit each.
       const std::size_t b = slots_[slot_of(hash, search.block)];
       if (b == kNoBlock) return;
       const std::uint32_t* entries = entries_.data() + (b << block_size_);
@@ -127,6 +129,7 @@ class NeighbourIndex final : public AnyNeighbourIndex {
         found.push_back(static_cast<Index>(entries[std::countr_zero(wanted)]));
       }
     } else {
+      // Dynamic dimensions instantiate all axes up to kMaxDim.
       if (Axis >= dim()) return collect<Axis - 1>(search, wanted, hash, found);
       const std::int32_t first = search.block[Axis];
       for (const std::uint64_t places : search.rows[Axis]->places) {
@@ -150,6 +153,7 @@ class NeighbourIndex final : public AnyNeighbourIndex {
   }
   [[nodiscard]] std::size_t slot_of(std::uint64_t hash, const std::int32_t* block) const {
     const std::size_t mask = slots_.size() - 1;
+    // Products have their good bits on top.
     std::size_t slot = (hash ^ (hash >> 32)) & mask;
     while (slots_[slot] != kNoBlock && !std::equal(block, block + dim(), blocks_[slots_[slot]].coordinates)) {
       slot = (slot + 1) & mask;
@@ -161,6 +165,7 @@ class NeighbourIndex final : public AnyNeighbourIndex {
     const std::uint64_t hash = hash_of(coordinates);
     std::size_t slot = slot_of(hash, coordinates);
     if (slots_[slot] != kNoBlock) return slots_[slot];
+    // At most a quarter full, so that the search for a block that is absent soon meets a free slot.
     if (4 * (blocks_.size() + 1) > slots_.size()) {
       rehash();
       slot = slot_of(hash, coordinates);

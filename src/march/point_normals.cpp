@@ -1,3 +1,6 @@
+// Orthonormal bases of normal spaces by Gram and Schmidt on the gradients of the k equations, column by column. A
+// gradient that keeps less than kRankTolerance of its length depends on those before it: the point is singular, its
+// basis NaN.
 #include "march/point_normals.hpp"
 
 #include <limits>

@@ -1,3 +1,5 @@
+// The cells that a march starts from: the valid ones of the 3^d block around a point of the surface. The point's own
+// cell may be missing among them, when it lies on a face or the cells were made by growing.
 #include "march/start.hpp"
 
 #include <algorithm>

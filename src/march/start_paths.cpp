@@ -1,3 +1,12 @@
+// All ways from p to q, from their two distance fields. s = u_p + u_q is the length of the shortest path through a
+// point; along a slice u_p - u_q = const between the ends, ways cross where s has a minimum. Minima are found as in a
+// flood: cells of the slice are taken from the lowest up, pools grow together over edges, and a pool that runs over
+// into a lower one was as deep as the water rose in it. Hollows less deep than the noise of the fields are none. A way
+// found on one slice is not added again on another: it passes within `spread` of the crossing, on the same side of the
+// body.
+//
+// Limits: both halves of a way must be shortest paths; ends within a few cells of each other have no slice. Cost: one
+// pass over the cells a slice, and two descents a way, in parallel.
 #include "march/start_paths.hpp"
 
 #include <algorithm>
@@ -78,6 +87,7 @@ std::vector<std::size_t> hollows(const SurfaceCells& cells, Surroundings<D>& sur
     for (const Index j : surroundings.around(cells.grid().cell(i))) {
       const std::int32_t other = place[static_cast<std::size_t>(j)];
       if (other < 0 || j == i || !make_edge<D, K>(point(j), point(i), d, cells.codim(), edge)) continue;
+      // Cell b touches two pools, or its own new one and another: the one whose lowest cell is higher ends here.
       const std::uint32_t a = flood.find(static_cast<std::uint32_t>(other));
       const std::uint32_t c = flood.find(static_cast<std::uint32_t>(b));
       const std::size_t higher = std::max(a, c);
@@ -110,6 +120,7 @@ class Ways {
 
   std::vector<StartPath> find() && {
     for (const double part : kSlices) {
+      // The first slice is the bisector, which needs no length; the others are placed by the least s found there.
       const double shortest = paths_.empty() ? 0 : least_;
       const double lever = std::min(part, 1 - part) * shortest;
       if (part == kSlices.front() || lever > kEndCells * cells_.grid().size()) cross((2 * part - 1) * shortest);
@@ -130,6 +141,7 @@ class Ways {
     if (band.empty()) return;
     const bool first = paths_.empty();
     if (first) least_ = band.front().length;
+    // On a shortest way this is min(u_p, u_q): the distance from the slice to the nearer end.
     const double lever = (least_ - std::abs(difference)) / 2;
     const double spread = std::max(options_.spread * lever, kSpreadCells * cells_.grid().size());
     std::vector<BandCell> lowest;  // of the hollows
@@ -142,6 +154,7 @@ class Ways {
     } else {
       for (const BandCell& crossing : lowest) add(crossing, spread);
     }
+    // Near the cut locus s is level over a wide part, in one hollow: crossings all over that part are tried.
     for (const BandCell& crossing : band) {
       if (crossing.length > band.front().length + kFlat * lever) break;
       add(crossing, spread);

@@ -34,6 +34,7 @@ class Stencil {
     present_.clear();
     const std::size_t dim = coordinates_.size();
     for (std::size_t i = 0; i < dim; ++i) coordinates_[i] = base_[i] = centre[i] - 1;
+    // The last line carries like an odometer; it leaves i = dim after the last cell.
     for (std::size_t i = 0; i < dim;) {
       const Index cell = grid.find(coordinates_);
       if (cell != CellGrid::kNone) present_.push_back(cell);

@@ -1,3 +1,11 @@
+// Charts for chart_march.cpp: at every valid cell an orthonormal basis of the tangent plane (d x 2), right-handed about
+// the normals, and the edges from all neighbours unrolled into it. The geometry of an edge is that of make_edge() and
+// ArrivalSolver::unroll(), by the same rules, for kLanes neighbours at once in single precision. What a march takes
+// from it: where the neighbour lies (2 numbers), and the rotation of its chart into this one (2 numbers).
+//
+// A record of a cell holds its integer coordinates apart from where its point lies in it. Differences of the former are
+// exact, so that chords keep all digits, however far from the origin. Everything is laid out in whole lanes; links are
+// filled up with a cell that no march settles.
 #include "march/surface_charts.hpp"
 
 #include <algorithm>
@@ -84,6 +92,7 @@ class LaneGeometry {
         }
       }
       parts = sqrt(part2_y) + sqrt(part2_x);
+      // For k = 1 the cosine of the normals has its sign; a basis of more has none.
       // Of right-handed frames about normals that point the same way.
       const std::size_t first = (2 + k) * d;
       const std::size_t second = (3 + k) * d;
@@ -104,6 +113,8 @@ class LaneGeometry {
     constexpr float kTiny = 1e-30F;
     const Floats bend = (2 * part2_y - product + 2 * part2_x) / (30 * chord2 + kTiny);
     const Floats length = chord_length * (1 + bend * (1 + 2.7F * bend));
+    // z, and the rotation that takes the edge's direction at y to its direction at x: parallel transport along the
+    // edge.
     edges.numbers[0] = -length * here[0];
     edges.numbers[1] = -length * here[1];
     edges.numbers[2] = here[0] * there[0] + here[1] * there[1];
@@ -172,6 +183,7 @@ void SurfaceCharts::fill_records(Index first, Index last) {
     for (Index n = 0; n < d * k; ++n) *to++ = static_cast<float>(normals.data()[n]);
     frame.set(normals.data());
     for (Index axis = 0; axis < 2; ++axis) {
+      // Householder frames come in both orientations. Turning over one axis makes all alike, so that rotations suffice.
       const double sign = axis == 1 ? frame.handedness() : 1.0;
       const SmallVector<D> lifted = frame.lift(SmallVector<D>(sign * SmallVector<D>::Unit(d, k + axis)));
       for (Index a = 0; a < d; ++a) *to++ = static_cast<float>(lifted(a));
@@ -198,6 +210,7 @@ void SurfaceCharts::link(const NeighbourIndex<D>& neighbours, Index first, Index
     links.clear();
     if (cells_.valid(i)) {
       neighbours.around(i, around);
+      // Without the cell itself, which then fills up the last lanes and is left out again below.
       around.erase(std::ranges::find(around, i));
       around.resize(in_lanes(around.size()), i);
       for (std::size_t f = 0; f < num_fields; ++f) here[f] = all_lanes(record(i)[f]);
@@ -225,6 +238,7 @@ void SurfaceCharts::link(const NeighbourIndex<D>& neighbours, Index first, Index
     float* numbers = block.numbers.data() + kNumbers * block.first.back();
     for (std::size_t l = 0; l < n; ++l) {
       linked[l] = links[l].cell;
+      // From a link's four numbers to four rows of all links: gather() loads kLanes links at once.
       for (std::size_t m = 0; m < kNumbers; ++m) numbers[m * n + l] = links[l].numbers[m];
     }
     block.first.push_back(static_cast<std::uint32_t>(block.linked.size()));

@@ -28,6 +28,7 @@ class TangentCoordinates {
     for (Index c = 0; c < codim(); ++c) {
       SmallVector<D> v = Eigen::Map<const SmallVector<D>>(normals + c * dim(), dim());
       for (Index b = 0; b < c; ++b) reflect(b, v);
+      // The normals are orthonormal: the reflections before have left nothing there but rounding.
       v.head(c).setZero();
       const double norm = v.norm();
       handedness_ = (c > 0 ? handedness_ : 1) * std::copysign(1.0, v(c));
@@ -36,6 +37,7 @@ class TangentCoordinates {
       // One reflection carries the normal n to -sign(n_1) e_1 and turns the frame's orientation round.
       if constexpr (D == 3 && K == 1)
         axis_ = std::copysign(1.0, normals[0]) * Eigen::Map<const SmallVector<D>>(normals, 3);
+      // 2 / |v|^2: with |v| = norm before the shift, |v|^2 = 2 norm |v(c)| after it.
       scale_[c] = 1 / (norm * std::abs(v(c)));
     }
   }
@@ -54,6 +56,7 @@ class TangentCoordinates {
   }
   /// The tangent vector in R^d with these coordinates.
   [[nodiscard]] SmallVector<D> lift(SmallVector<D> w) const {
+    // Reflections are their own inverses: the same ones in reverse.
     for (Index c = codim(); c-- > 0;) reflect(c, w);
     return w;
   }
