@@ -19,12 +19,14 @@ class BandedCholesky {
     data_.assign(static_cast<std::size_t>(n * (width + 1)), 0.0);
   }
   [[nodiscard]] Index size() const { return n_; }
+  // Row r starts at r (width + 1) with entry c = r - width: r (width + 1) + c - (r - width).
   [[nodiscard]] double& at(Index r, Index c) { return data_[static_cast<std::size_t>(r * width_ + c + width_)]; }
   [[nodiscard]] double at(Index r, Index c) const { return data_[static_cast<std::size_t>(r * width_ + c + width_)]; }
 
   /// Returns the row of the first pivot that is not positive, or -1 when the matrix is positive definite and factored.
   [[nodiscard]] Index factor() {
     for (Index r = 0; r < n_; ++r) {
+      // Entries left of the band stay zero: the factor has the band of the matrix.
       const Index first = std::max<Index>(0, r - width_);
       for (Index c = first; c <= r; ++c) {
         double sum = at(r, c);
@@ -44,6 +46,7 @@ class BandedCholesky {
   /// Solves in place with the factor for every row of x at once: unknown r is column r (of n).
   void solve_rows(Eigen::Ref<Points> x) const {
     for (Index r = 0; r < n_; ++r) {
+      // L z = x, then L^T x = z.
       for (Index c = std::max<Index>(0, r - width_); c < r; ++c) x.col(r).noalias() -= at(r, c) * x.col(c);
       x.col(r) /= at(r, r);
     }

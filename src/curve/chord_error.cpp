@@ -1,3 +1,6 @@
+// The error model of the paper's Appendix II: an interval eps of a curve of radius r is the chord of an arc of length r
+// acos(1 - eps^2 / (2 r^2)). With Cst = eps / r the same for all intervals, the polyline of a curve of length L is too
+// short by (A1), and (A2) tells the seconds that its nodes take. Radii are those of the polyline itself.
 #include "curve/chord_error.hpp"
 
 #include <cmath>
@@ -9,6 +12,7 @@ namespace taut::detail {
 
 double relative_chord_error(double cst) {
   // acos(1 - c^2 / 2) = 2 asin(c / 2); below the switch the series' next term is c^6 * 5 / 7168 < 1e-15 of the first.
+  // A chord has no more than two radii: intervals beyond that are far too long for their bend.
   if (cst >= 2) return std::numbers::pi / 2 - 1;
   const double c2 = cst * cst;
   if (cst < 1e-3) return c2 / 24 * (1 + c2 * (9.0 / 80));
@@ -22,6 +26,7 @@ ChordError chord_error(const PointsIn& nodes) {
   const double length = intervals.sum();
   if (!(length > 0)) return error;
   for (Index i = 0; i < intervals.size(); ++i) error.sum += intervals(i) * relative_chord_error(ratios(i));
+  // The mean of squares, since the error of an interval goes with Cst^2 / 24 of its length.
   error.cst = std::sqrt(intervals.dot(ratios.cwiseAbs2()) / length);
   error.uniform = length * relative_chord_error(error.cst);  // (A1)
   return error;

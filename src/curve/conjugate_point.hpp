@@ -35,9 +35,11 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
   for (Index e = 0; e < failing; ++e) {
     const auto s = chain.end_block(e);
     const Block load = flux + s.topLeftCorner(q, q) * here;
+    // S_01 is square, but not symmetric.
     next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(load);
     flux = (s.bottomLeftCorner(q, q) * here + s.bottomRightCorner(q, q) * next).eval();
     // Keep the fields independent: another basis of their span.
+    // A flux is a slope: h makes it a length like Y itself.
     const double h = curve.lengths[static_cast<std::size_t>(e)];
     Block gram = next.transpose() * next + h * h * (flux.transpose() * flux);
     const Eigen::LLT<Block> factor(gram);
@@ -68,6 +70,8 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
     for (int i = 0; i <= p; ++i) sum += coefficients(i) * fields.middleRows(i * d, d);
     return sum;
   };
+  // The combination of the fields that comes nearest to zero at xi, and the square of how near: an eigenvector of q x
+  // q.
   const auto smallest = [&](double xi, Eigen::VectorXd& direction) {
     element.basis(xi, basis);
     const Eigen::MatrixXd field = combine(basis);
@@ -79,6 +83,7 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
   Eigen::VectorXd direction(q);
   double best = -1;
   double least = std::numeric_limits<double>::infinity();
+  // The square of a distance may have several minima in an element: sampled first, then followed to the zero.
   constexpr int kSamples = 32;
   for (int i = 0; i <= kSamples; ++i) {
     const double xi = -1 + 2.0 * i / kSamples;
@@ -94,6 +99,7 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
     const Eigen::VectorXd slope = combine(element.derivative.transpose() * basis) * direction;
     const double change = value.dot(slope) / slope.squaredNorm();
     if (!std::isfinite(change)) break;
+    // Short steps stay in the valley that the samples found.
     best = std::clamp(best - std::clamp(change, -0.2, 0.2), -1.0, 1.0);
     if (std::abs(change) < 1e-13) break;
   }

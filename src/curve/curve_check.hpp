@@ -75,9 +75,11 @@ class CurveChecker {
     seconds_.resize(d_, m * checks);
     value_.resize(k_, m * checks);
     jacobian_.resize(d_ * k_, m * checks);
+    // Zero stays where J has no full rank: the weakest gradient there.
     own_gradient_.setZero(k_, m * checks);
     for (Index e = 0; e < m; ++e) {
       const double scale = 2 / kernel.lengths()[static_cast<std::size_t>(e)];
+      // Relative to the element's first node: large coordinates would cost the derivatives their digits.
       local_ = x.middleCols(e * kernel.degree(), n).colwise() - x.col(e * kernel.degree());
       points_.middleCols(e * checks, checks).noalias() = local_.lazyProduct(element.check_value);
       points_.middleCols(e * checks, checks).colwise() += x.col(e * kernel.degree());
@@ -103,8 +105,10 @@ class CurveChecker {
   /// resolved do.
   [[nodiscard]] bool is_smooth(const ReferenceElement& element, const Eigen::Ref<const Eigen::MatrixXd>& seconds) {
     constexpr double kFall = 0.25;
+    // Lower degrees have too few modes to see them fall.
     if (element.degree < 5) return true;
     modes_.noalias() = seconds * element.check_modes;
+    // In pairs, since even or odd modes alone may vanish by symmetry.
     const double before = std::max(modes_.col(0).norm(), modes_.col(1).norm());
     return std::max(modes_.col(2).norm(), modes_.col(3).norm()) <= kFall * before;
   }
@@ -127,6 +131,7 @@ class CurveChecker {
     double remainder = 0;    // of the energy, quadratic in the error
     for (Index e = 0; e < m; ++e) {
       const double half = kernel.lengths()[static_cast<std::size_t>(e)] / 2;
+      // To P x'' = r an element answers with its lowest free mode, of stiffness p (p + 1) / half^2.
       const double response = half * half / (p * (p + 1));
       double element_remainder = 0;
       double element_correction = 0;
@@ -162,6 +167,7 @@ class CurveChecker {
         const double normal_speed = (frame_.normals().transpose() * first_).squaredNorm();
         tangential_ = second_ - frame_.normals() * (frame_.normals().transpose() * second_);
         element_remainder += weight * (normal_speed + response * tangential_.squaredNorm()) / 2;
+        // The square of the speed: the parameter is arc length to the order of the error only.
         const double speed = first_.squaredNorm();
         check.curvature = std::max(check.curvature, second_.norm() / speed);
         tangential_ -= first_ * (tangential_.dot(first_) / speed);
@@ -178,6 +184,7 @@ class CurveChecker {
       check.element_error[static_cast<std::size_t>(e)] = element_remainder + caution * std::abs(element_correction);
     }
     const double lagrangian = energy + correction;
+    // E = L^2 / (2 T) at constant speed.
     check.length = std::sqrt(2 * kernel.period() * std::max(lagrangian, 0.0));
     const double speed = check.length / kernel.period();
     const double to_length = speed > 0 ? 1 / speed : 1;  // dL = dE / speed
@@ -210,6 +217,7 @@ class CurveChecker {
       }
       check.weakest_gradient = std::min(check.weakest_gradient, own.minCoeff() / strongest);
       for (Index j = 1; j + 2 < own.size(); ++j) {
+        // Only where it is weak already can a zero lie between two check points.
         const double less = std::min(own(j), own(j + 1));
         if (less > kWeak * strongest) continue;
         const double falls = (own(j - 1) - own(j)) / (place_(j) - place_(j - 1));

@@ -56,6 +56,7 @@ template <class Step>
 /// before; it returns how far its result is from the one before. Returns the last difference.
 template <class Solve>
 double halve_until_settled(const Solve& solve) {
+  // A jump of the normal inside an element, as at a crease, is not resolved by any number of pieces.
   constexpr int kMostPieces = 64;
   constexpr double kEnough = 4e-15;  // with order 16, halving a step that leaves this leaves nothing
   constexpr double kNoise = 1e-11;   // below, a difference that no longer shrinks is rounding

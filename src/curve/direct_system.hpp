@@ -47,6 +47,7 @@ class DirectSystem {
     stiffness_.resize((p + 1) * q_, p - 1);
     for (int i = 1; i < p; ++i) {
       for (int j = 0; j <= p; ++j) {
+        // The chain's order: inner nodes, then the left end, then the right end.
         const Index slot = j == 0 ? p - 1 : j == p ? p : j - 1;
         stiffness_.col(i - 1).segment(slot * q_, q_).setConstant(curve.element->stiffness(i, j));
       }
@@ -70,6 +71,7 @@ class DirectSystem {
   }
   /// How much the tangent space turns from node i to node j (an angle, radians, for small ones).
   [[nodiscard]] double turn(Index i, Index j) const {
+    // The sum of the squared sines of the angles between the two spaces.
     const double lost = static_cast<double>(q_) - (tangents(j).transpose() * tangents(i)).squaredNorm();
     return std::asin(std::sqrt(std::clamp(lost, 0.0, 1.0)));
   }
@@ -79,6 +81,8 @@ class DirectSystem {
     const Index n = curve.num_nodes();
     for (Index j = 1; j + 1 < n; ++j) {
       const auto gradients = curve.gradients(j);
+      // k = 1: the Hessian has come with the visit, with weight 1; mu scales it below. k > 1: a visit with the weights
+      // mu.
       if (k_ == 1) {
         curve.weight(0, j) = -gradients.col(0).dot(curve.force.col(j)) / gradients.col(0).squaredNorm();
       } else {
@@ -86,6 +90,7 @@ class DirectSystem {
         frame.multipliers(curve.force.col(j), curve.weight.col(j));
       }
     }
+    // The ends are fixed: no multiplier.
     if (k_ > 1) {
       curve.weight.col(0).setZero();
       curve.weight.col(n - 1).setZero();
@@ -109,6 +114,7 @@ class DirectSystem {
   /// positive definite; without, only where it is singular.
   bool factor(const Curve& curve, Evaluator& /*evaluator*/, bool curvature, bool definite) {
     const bool assembled = assemble(curve, curvature, false);
+    // Without the curvature every element is positive definite, which says nothing about the mesh.
     if (curvature) resolved_ = chain_.condensed();
     return assembled && chain_.factor(definite);
   }
@@ -123,7 +129,10 @@ class DirectSystem {
   /// softest. It is nearly neutral where a conjugate point is close to the end (as between antipodes of a sphere). None
   /// where the energy falls within an element already: the pivots say nothing then.
   SoftDirection soft_direction(const Curve& curve, Evaluator& /*evaluator*/) {
+    // An element alone already has a negative direction: the pivots of the ends were never made.
     if (!chain_.condensed()) return {};
+    // Fields that vanish from the next element end on: the least curvature shows where the pivot fails, or at the last
+    // one.
     const Index end = chain_.first_failing() < 0 ? curve.num_elements() - 1 : chain_.first_failing();
     if (end <= 0) return {};
     SoftDirection soft;
@@ -160,6 +169,7 @@ class DirectSystem {
 
   /// After factor(curve, true, true): the factorisation has told already, but for how small the least curvature may be.
   [[nodiscard]] Confirmation confirm_minimum(const Curve& curve, Evaluator& /*evaluator*/, double /*energy*/) {
+    // The last pivot alone: it tells of the whole curve, once those before are positive definite.
     constexpr double kWeak = 0.05;  // of the stiffness of an element
     const Index last = curve.num_elements() - 1;
     if (last < 1) return Confirmation::minimum;
@@ -184,6 +194,7 @@ class DirectSystem {
   std::optional<double> conjugate_point(const Curve& curve, bool regular_ends) {
     const Index failing = chain_.first_failing();
     if (failing < 0 || !regular_ends) return std::nullopt;
+    // Factored again with free ends: the couplings that Jacobi fields start from were left out.
     chain_.start();
     if (!assemble(curve, true, true)) return std::nullopt;
     return find_conjugate_point(curve, *this, failing);
@@ -210,6 +221,7 @@ class DirectSystem {
       const double scale = curve.scale(e);
       const Index first = e * p;
       for (int j = 0; j <= p; ++j) {
+        // Zero tangents of a fixed end make its coupling zero.
         const bool fixed = !ends_free && ((j == 0 && e == 0) || (j == p && e + 1 == m));
         const Index slot = j == 0 ? inner : j == p ? inner + q_ : (j - 1) * q_;
         if (fixed) {
@@ -223,6 +235,7 @@ class DirectSystem {
         const Index columns = inner + 2 * q_ - slot;
         const auto ti = tangents(first + i);
         for (Index a = 0; a < q_; ++a) {
+          // Row a of all blocks T_i^T K_ij T_j, j from i on, in one product: symmetric, so that the rest is not needed.
           double* row = chain_.row(e, slot + a);
           Eigen::Map<Eigen::VectorXd>(row + slot, columns).noalias() =
               scale * stiffness_.col(i - 1).tail(columns).cwiseProduct(fan_.bottomRows(columns).lazyProduct(ti.col(a)));
@@ -236,6 +249,7 @@ class DirectSystem {
       auto right = chain_.end_right(e);
       ends.setZero();
       right.setZero();
+      // T^T T = I, and K_00 = K_pp by symmetry of the nodes.
       ends.diagonal().setConstant(scale * curve.element->stiffness(0, 0));
       if (e > 0) {  // the node shared with the element before is booked here
         right.head(q_) = right_.col(first);

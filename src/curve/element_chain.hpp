@@ -68,6 +68,7 @@ class ElementChain {
     auto block = end_block(e);
     auto right = end_right(e);
     for (Eigen::Index k = 0; k < inner_; ++k) {
+      // Row k of U^-T B, B the couplings to the ends: the Schur complement is C - (U^-T B)^T (U^-T B), a row at a time.
       Eigen::Map<const EndSegment> ends(row(e, k) + inner_, 2 * q_);
       block.noalias() -= ends * ends.transpose();
       right -= ends * row(e, k)[width_ - 1];
@@ -85,6 +86,7 @@ class ElementChain {
     for (Eigen::Index j = 1; j < m_; ++j) {
       Eigen::Map<Block> pivot = block_of(pivot_, j);
       Eigen::Map<Segment> right = segment(j);
+      // D_j = A_jj - B_{j-1}^T D_{j-1}^-1 B_{j-1}; the link kept is D_j^-1 B_j.
       pivot = end_block(j - 1).bottomRightCorner(q_, q_) + end_block(j).topLeftCorner(q_, q_);
       right = end_right(j - 1).tail(q_) + end_right(j).head(q_);
       if (j > 1) {
@@ -94,6 +96,7 @@ class ElementChain {
       }
       Eigen::Map<Block> link = block_of(link_, j);
       link = end_block(j).topRightCorner(q_, q_);
+      // Success with a NaN on the diagonal would pass for positive definite: hence the second look.
       cholesky_.compute(pivot);
       if (cholesky_.info() == Eigen::Success && pivot.diagonal().allFinite()) {
         cholesky_.solveInPlace(link);
@@ -105,6 +108,7 @@ class ElementChain {
       eigen_.compute(pivot);
       const Segment values = eigen_.eigenvalues();
       const double largest = values.cwiseAbs().maxCoeff();
+      // Singular to rounding: the curve ends in a conjugate point, and no solution is worth having.
       if (!(values.cwiseAbs().minCoeff() > 1e-14 * largest)) return false;
       negative_ += static_cast<int>((values.array() < 0).count());
       const Block inverse =
@@ -136,6 +140,7 @@ class ElementChain {
   /// Least eigenvalue of the pivot of element end j, after factor(true).
   [[nodiscard]] double least_pivot(Eigen::Index j) {
     const Eigen::Map<Block> pivot = block_of(pivot_, j);
+    // Closed forms where q is known and small.
     if constexpr (Q == 1) return pivot(0, 0);
     if constexpr (Q == 2) {
       return (pivot.trace() - std::hypot(pivot(0, 0) - pivot(1, 1), 2 * pivot(0, 1))) / 2;
@@ -152,6 +157,7 @@ class ElementChain {
     Eigen::Map<Eigen::VectorXd>(v, m_ * stride + q_).setZero();
     const Eigen::Map<Block> pivot = block_of(pivot_, j);
     eigen_.compute(pivot);
+    // Where the pivot failed, the right side was left as it was; else it holds D_j^-1 times it.
     const Segment load = first_failing_ == j ? Segment(segment(j)) : Segment(pivot * segment(j));
     Segment here = Segment::Zero(q_);
     for (Eigen::Index i = 0; i < q_ && eigen_.eigenvalues()(i) <= eigen_.eigenvalues()(0) + level; ++i) {
@@ -159,6 +165,8 @@ class ElementChain {
     }
     here.normalize();
     double curvature = here.dot(pivot * here);
+    // No load in these directions, or it leads where the energy rises although another direction falls: the softest
+    // one.
     if (!(here.norm() > 0.5) || (curvature > 0 && eigen_.eigenvalues()(0) < 0)) {
       here = eigen_.eigenvectors().col(0);
       curvature = eigen_.eigenvalues()(0);
@@ -193,6 +201,7 @@ class ElementChain {
   bool eliminate_inner(Eigen::Index e) {
     const Eigen::Index inner = Inner == Eigen::Dynamic ? inner_ : Inner;
     const Eigen::Index w = Inner == Eigen::Dynamic ? width_ : Inner + 2 * Q + 1;
+    // Rows do not overlap; said so, the compiler keeps the inner loop in vector registers.
     double* __restrict rows = row(e, 0);
     for (Eigen::Index k = 0; k < inner; ++k) {
       double* __restrict pivot_row = rows + k * w;

@@ -1,3 +1,6 @@
+// Points at equal distances along a dense curve (d x m) on a surface. Arc lengths: each chord is taken for that of a
+// circle whose curvature is the mean of its ends', which takes away the leading error of chords. Corners turn by more
+// than kCorner and have no curvature. The points themselves are interpolated on the chords and projected.
 #include "taut/curve/spectral_curve.hpp"
 
 #include <algorithm>
@@ -57,12 +60,14 @@ Points evenly_spaced(const Surface& surface, const PointsIn& curve, Index n) {
   Index i = 0;  // the segment that holds the point
   for (Index j = 0; j < n; ++j) {
     const double s = lengths(last) * static_cast<double>(j) / static_cast<double>(n - 1);
+    // Both ascend: one pass for all points.
     while (i + 1 < last && lengths(i + 1) <= s) ++i;
     const double segment = lengths(i + 1) - lengths(i);
     const double t = segment > 0 ? std::clamp((s - lengths(i)) / segment, 0.0, 1.0) : 0;
     points.col(j) = (1 - t) * curve.col(i) + t * curve.col(i + 1);
   }
   project_to_surface(*surface.function().make_evaluator(), surface.dim(), surface.codim(), points);
+  // The ends are those of the curve, bit for bit.
   points.col(0) = curve.col(0);
   points.col(n - 1) = curve.col(last);
   return points;

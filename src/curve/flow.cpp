@@ -1,3 +1,6 @@
+// The correction of the paper's section 4, from outside: options are checked, ends that are too close for it are
+// answered by their chord, and flow_correction.cpp does the rest. Time is measured for the summary only (the paper's K
+// and (A2)); nothing is decided by it.
 #include "taut/curve/flow.hpp"
 
 #include <Eigen/LU>
@@ -38,6 +41,7 @@ void validate(const Surface& surface, const PointsIn& start, const FlowOptions& 
     throw InvalidArgument("correct_flow: lattice.origin must be " + std::to_string(surface.dim()) + " finite numbers");
   }
   not_negative(options.curvature_bound, "curvature_bound");
+  // An explicit step moves nodes by beta / 4 of the way to the surface: beyond 8 it would diverge, beyond 4 overshoot.
   const double most = options.time_step == FlowTimeStep::explicit_euler ? 4 : std::numeric_limits<double>::max();
   if (!(options.beta > 0 && options.beta <= most)) {
     throw InvalidArgument("correct_flow: beta = " + detail::describe(options.beta) +
@@ -68,6 +72,7 @@ std::optional<FlowResult> chord_of_near_ends(const Surface& surface, const Point
   nodes.evaluate(*evaluator, ends);
   double turn = 0;  // at most
   if (!equal) {
+    // What of the one normal space is not in the other: the sines of the angles between them.
     const Eigen::MatrixXd overlap = nodes.normals(0).transpose() * nodes.normals(1);
     turn = (nodes.normals(1) - nodes.normals(0) * overlap).norm();
     if (!(turn <= kFlat) || !(overlap.determinant() > 0)) return std::nullopt;
@@ -75,6 +80,7 @@ std::optional<FlowResult> chord_of_near_ends(const Surface& surface, const Point
   FlowResult result;
   result.points = ends;
   result.length = chord;
+  // An arc that turns by an angle a is longer than its chord by a^2 / 24, to leading order.
   result.length_error = chord * turn * turn / 24 + (chord > 0 ? std::numeric_limits<double>::epsilon() * scale : 0);
   result.summary = {
       .num_intervals = 1, .length = chord, .mean_interval = chord, .longest_interval = chord, .cst = turn};

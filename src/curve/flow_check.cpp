@@ -1,3 +1,8 @@
+// What a relaxed polyline is worth. Residuals: the discrete |k_g| at the nodes, the distance to the surface at nodes
+// and at the middles of intervals. The length's error is the larger of two estimates, with a margin of one half:
+// Appendix II's sum over the intervals, and half the change since about half as many nodes (a second-order error would
+// change by three times itself); to it come the bend that is left, which straightening shortens by about (|k_g| L)^2 /
+// 10 of L at most, and rounding. The status names the first of the reasons for doubt that applies, gravest first.
 #include "curve/flow_check.hpp"
 
 #include <Eigen/LU>
@@ -22,6 +27,7 @@ double least_agreement(const FlowNodes& nodes) {
   double agreement = 1;
   for (Index i = 0; i + 1 < nodes.size(); ++i) {
     const Eigen::MatrixXd overlap = nodes.normals(i).transpose() * nodes.normals(i + 1);
+    // k = 1: the cosine with its sign. k > 1: bases have no common orientation, the product of the cosines has to do.
     agreement = std::min(agreement, nodes.codim() == 1 ? overlap(0, 0) : std::abs(overlap.determinant()));
   }
   return agreement;
@@ -60,6 +66,8 @@ void check_flow(const Surface& surface, const FlowOptions& options, CountingEval
                         64 * kEpsilon * (result.length + scale * std::sqrt(static_cast<double>(m)));
 
   result.status = Status::not_converged;
+  // Normals that disagree are a bend that is too sharp, unless the gradient between them is weak: then a point without
+  // one.
   if (state.outcome == FlowOutcome::singular || (agreement < kAgreement && between.rank_margin() < kWeak) ||
       state.nodes.rank_margin() < kSingular) {
     result.status = Status::rank_deficient;

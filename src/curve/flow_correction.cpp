@@ -1,3 +1,10 @@
+// One geodesic correction by the paper's flow (flow_correction.hpp lists its steps). Levels of nodes: on few nodes the
+// flow's long waves decay in few steps, so it begins on about as many as resolve the bends and doubles their number up
+// to the wanted one, relaxing loosely on all levels but the last. How many are wanted: the paper's threshold eps_E
+// where a spacing is asked for, else the Cst that makes (A1) kDefaultAccuracy of the length.
+//
+// Ends: every round counts evaluated nodes against work_allowed(); rounds of insertion are bounded; a curve whose
+// intervals leave the surface however short they are is torn.
 #include "curve/flow_correction.hpp"
 
 #include <algorithm>
@@ -41,6 +48,7 @@ constexpr double kShortest = 1e-6;   // of the length: no interval shorter than 
 
 Index work_allowed(const FlowOptions& options, Index dim) {
   if (options.max_evaluated > 0) return options.max_evaluated;
+  // Explicit steps need some m^2 visits of m nodes, implicit ones a few dozen.
   return options.time_step == FlowTimeStep::explicit_euler ? Index{2000000000} / dim : Index{2000000};
 }
 
@@ -61,6 +69,7 @@ FlowCorrection::FlowCorrection(const Surface& surface, const FlowOptions& option
       insertion_(evaluator_, surface.dim(), surface.codim(), options.lattice) {}
 
 double FlowCorrection::bound(double length, bool last) const {
+  // A bound on |k_g|; times the length it is an angle, whatever the scale of the surface.
   const double final_bound = options_.curvature_bound > 0 ? options_.curvature_bound : kDefaultBound / length;
   return last ? final_bound : std::max(final_bound, kLooseBound / length);
 }
@@ -71,13 +80,16 @@ void FlowCorrection::project_nodes(Points& points) {
   const Index inner = points.cols() - 2;
   if (inner < 1) return;
   const double mean = polyline_length(points) / static_cast<double>(inner + 1);
+  // A start by cells is off the surface by up to a cell.
   const double reach = 2 * std::max(mean, options_.lattice.size);
   Points projected = points.middleCols(1, inner);
+  // A zero axis: free projection, no plane.
   const auto found = project_in_planes(evaluator_, surface_.dim(), surface_.codim(), projected,
                                        Points::Zero(points.rows(), inner), Vector::Constant(inner, reach), 1e-6 * mean);
   Points kept(points.rows(), points.cols());
   Index count = 0;
   const auto keep = [&](const Vector& p) {
+    // Nodes that land on each other would make intervals without a direction.
     if (count == 0 || (p - kept.col(count - 1)).norm() > 1e-3 * mean) kept.col(count++) = p;
   };
   keep(points.col(0));
@@ -149,10 +161,13 @@ void FlowCorrection::cut_to_rule(Points& points, const IntervalRule& rule) {
   }
 }
 
+// How long intervals are to be: eps_E where a spacing is asked for, else such that (A1) is kDefaultAccuracy of the
+// length; all alike, or in proportion to the radius of curvature (NodeSpread::curvature).
 IntervalRule FlowCorrection::choose_rule(const Points& points) const {
   const Vector lengths = interval_lengths(points);
   const Vector curvatures = interval_curvatures(points);
   const double length = lengths.sum();
+  // As Cst in (A1): the error goes with the square of the curvature.
   const double typical = std::sqrt(lengths.dot(curvatures.cwiseAbs2()) / length);  // root mean square
   const double cst = std::sqrt(24 * kDefaultAccuracy);                             // (A1) for small Cst
   IntervalRule rule{.longest = length / kFewestIntervals, .per_radius = kWantedTurn, .per_turn = kWantedTurn};
@@ -192,6 +207,8 @@ std::vector<bool> FlowCorrection::too_long(const FlowState& state) {
   return wide;
 }
 
+// From the first curve to the wanted number of nodes, by levels. `coarse_length` receives the length before the last
+// doubling.
 FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
   const Points rough = state.nodes.points();
   const double length = polyline_length(rough);
@@ -200,6 +217,7 @@ FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
   const Vector wanted = wanted_intervals(rough, turns, rule);
   // The geodesic is longer than its polyline, and may not be cut into fewer intervals than that takes.
   const double stretch = 1 + summarise(rough).error_sum / length;
+  // The last factor keeps rounding from adding an interval to a whole number.
   const double count = std::ceil(stretch * interval_lengths(rough).cwiseQuotient(wanted).sum() * (1 - 1e-9));
   if (options_.spacing > 0 && count > kMostNodes) {
     throw OutOfMemory("correct_flow: spacing = " + describe(options_.spacing) + " asks for " +
@@ -211,6 +229,7 @@ FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
   double intervals = std::max(2.0, std::min(count, static_cast<double>(kMostDefaultNodes)));
   if (options_.spacing > 0) intervals = std::max(2.0, count);
   double scale = 1;
+  // Coarser by halves, as long as the sharpest bend is still followed at twice the intervals.
   while (intervals >= 2 * kFewestIntervals && 2 * scale * sharpest <= kRoughTurn) {
     intervals = std::ceil(intervals / 2);
     scale *= 2;
@@ -244,6 +263,7 @@ FlowState FlowCorrection::refine(FlowState state, double& coarse_length) {
       state.outcome = FlowOutcome::out_of_work;
       break;
     }
+    // A round that put a node into most intervals counts as a doubling: what the error estimate compares with.
     if (2 * inserted > before) coarse_length = lengths.sum();
     context_.report("correct", 1 - std::log2(scale) / (1 + std::log2(coarsest)));
   }
@@ -264,6 +284,7 @@ FlowResult FlowCorrection::run(const PointsIn& start) {
     const Index conjugate = solver_.first_conjugate_node(state);
     result.locally_shortest = conjugate == 0;
     if (result.locally_shortest) result.index = 0;
+    // The arc length of the node, too short by the chords' error before it.
     if (conjugate > 0) result.conjugate_at = polyline_length(result.points.leftCols(conjugate + 1));
   }
   result.summary.num_inserted = insertion_.num_projected();

@@ -1,3 +1,7 @@
+// F and its Jacobian J (k x d) at all nodes in one visit, and what the flow needs of them there: J^T = n R with n (d x
+// k) orthonormal, the step -J^+ F = -n R^-T F to the surface, and multipliers R^-1 n^T v. k = 1 has them by division;
+// more equations by Householder reflections. A rank is judged by |R_jj| against the largest gradient along the curve,
+// so that the scale of F plays no part.
 #include "curve/flow_nodes.hpp"
 
 #include <Eigen/QR>
@@ -67,11 +71,13 @@ Repose measure_repose(const FlowNodes& nodes, const PointsIn& points, const Vect
     const double mean = 0.5 * (next_interval + last_interval);
     const auto normal = nodes.normals(i);
     const auto tangential = [&](Vector v) -> Vector { return v - normal * (normal.transpose() * v); };
+    // The bisector of both edges, tangential to the surface: the direction of the curve at the node.
     const Vector along = tangential(next / next_interval + last / last_interval).normalized();
     const Vector curvature = tangential(next / next_interval - last / last_interval) / mean;  // (3), Figure 2
     // Written so that a NaN does not pass for a straight curve.
     const double across = (curvature - along * along.dot(curvature)).norm();
     if (!(across <= repose.geodesic_curvature)) repose.geodesic_curvature = across;
+    // eps / w at the node. The difference of eps_i / w_i between neighbours is told in parts of that.
     const double ratio = mean / (0.5 * (widths(i) + widths(i - 1)));
     const double uneven = std::abs(along.dot(next / widths(i) - last / widths(i - 1))) / ratio;
     if (!(uneven <= repose.unevenness)) repose.unevenness = uneven;
@@ -88,6 +94,7 @@ Vector normal_turns(const FlowNodes& nodes) {
     const auto there = nodes.normals(i + 1);
     const Eigen::MatrixXd overlap = here.transpose() * there;
     const double sine = (there - here * overlap).norm();
+    // atan2 is exact at small angles, and tells pi from 0.
     turns(i) = nodes.codim() == 1 ? std::atan2(sine, overlap(0, 0)) : sine;
   }
   return turns;

@@ -1,3 +1,15 @@
+// Time steps of the paper's equation (4) for a fixed number of nodes (notation in flow_nodes.hpp and flow_solver.hpp).
+//
+// Explicit Euler is the paper's scheme: stable for Delta t < Delta h^2 / 2, hence O(m^2) steps for m nodes. The
+// implicit step linearises the velocity about the nodes in tangent coordinates: (shift M + A) y = T^T C_t with A the
+// second variation of the discrete energy, block tridiagonal, factored in O(m (d - k)^3). As the shift goes to zero it
+// becomes Newton's method, and the last steps converge quadratically. Where A is not positive definite, its curvature
+// term is left out, which makes it a step of a gradient flow. Beyond kMaxCoupled directions one tridiagonal solve
+// serves all coordinates. A step is kept if the energy does not rise and no node has left its sheet; else the shift
+// grows tenfold.
+//
+// At rest: |k_g| below its bound, intervals even, nodes on the surface, each down to what rounding leaves; or, where
+// neither energy nor curvature falls, to what the noise of F leaves, which the length hardly sees.
 #include "curve/flow_solver.hpp"
 
 #include <Eigen/QR>
@@ -60,6 +72,7 @@ FlowSolver::FlowSolver(CountingEvaluator& evaluator, Index dim, Index codim, con
 
 void FlowSolver::set_widths(const VectorIn& widths) {
   const Index m = widths.size();
+  // Mean 1, so that even nodes have the paper's formulas and stability limits.
   widths_ = widths / widths.mean();
   masses_.resize(m + 1);
   masses_ << widths_(0) / 2, (widths_.head(m - 1) + widths_.tail(m - 1)) / 2, widths_(m - 1) / 2;
@@ -80,6 +93,7 @@ void FlowSolver::compute_velocity(const FlowNodes& nodes, const Points& q) {
   Vector pull(dim_);
   for (Index i = 1; i + 1 < q.cols(); ++i) {
     pull = (q.col(i + 1) - q.col(i)) / widths_(i) - (q.col(i) - q.col(i - 1)) / widths_(i - 1);  // C_ss, Figure 2
+    // At rest pull + J^T lambda = 0 at every node: lambda weighs the Hessians in the second variation.
     nodes.multipliers(i, -pull, multipliers_.col(i));
     const auto normal = nodes.normals(i);
     velocity_.col(i) = pull - normal * (normal.transpose() * pull);  // (3)
@@ -101,6 +115,7 @@ void FlowSolver::compute_bases(const FlowNodes& nodes) {
     if (codim_ == 1) {
       // Columns 2 .. d of the reflection that takes the first axis to the normal.
       Vector v = nodes.normals(i).col(0);
+      // The sign that does not cancel.
       v(0) += v(0) < 0 ? -1.0 : 1.0;
       const double scale = 2 / v.squaredNorm();
       for (Index c = 0; c < t; ++c) {
@@ -127,6 +142,7 @@ void FlowSolver::assemble(const FlowNodes& nodes, double shift, Metric metric) {
     block.setZero();
     if (metric == Metric::hessian) {
       const auto hessian = Eigen::Map<const Eigen::MatrixXd>(hessians_.data() + i * dim_ * dim_, dim_, dim_);
+      // The Lagrangian is E - lambda F, since J^T lambda is the normal part of -pull = grad E: hence the minus.
       block.noalias() -= basis.transpose() * (hessian * basis);
     }
     block.diagonal().array() += 1 / widths_(i - 1) + 1 / widths_(i) + shift * masses_(i);
@@ -190,6 +206,7 @@ void FlowSolver::project(FlowNodes& nodes) {
     const double off = off_surface(nodes);
     if (off <= kOffSurface * mean || !(off <= mean)) break;
     trial.evaluate(evaluator_, nodes.corrected());
+    // Newton's steps that do not come nearer: the noise of F, or too far from the surface.
     if (!(off_surface(trial) < off)) break;
     std::swap(nodes, trial);
   }
@@ -199,9 +216,11 @@ bool FlowSolver::keeps_to_its_sheet(const FlowNodes& from, const FlowNodes& to) 
   for (Index i = 1; i + 1 < from.size(); ++i) {
     const double moved = (to.points().col(i) - from.points().col(i)).norm();
     const double off = to.correction().col(i).norm();
+    // Nodes may be as far off as they were before, besides what the move itself explains.
     if (!(off <= kMostRise * moved + 2 * from.correction().col(i).norm() + kNoisyOffSurface * moved)) return false;
     if (codim_ == 1 && from.normals(i).col(0).dot(to.normals(i).col(0)) < kLeastCosine) return false;
   }
+  // Bases of several normals carry no orientation to compare.
   if (codim_ > 1) return true;
   // Neighbours that drift apart around the surface would let the curve slip through it.
   for (Index i = 1; i < from.size(); ++i) {
@@ -216,6 +235,7 @@ bool FlowSolver::keeps_to_its_sheet(const FlowNodes& from, const FlowNodes& to) 
 bool FlowSolver::step_explicitly(FlowNodes& nodes) {
   double step = 1;  // of Delta h^2, the local one where nodes are not even
   for (Index i = 1; i + 1 < nodes.size(); ++i) {
+    // Gershgorin's bound on the stiffness at the node; 1 for even nodes.
     step = std::min(step, 2 * masses_(i) / (1 / widths_(i - 1) + 1 / widths_(i)));
   }
   step *= kExplicitStep;
@@ -232,6 +252,7 @@ bool FlowSolver::step_explicitly(FlowNodes& nodes) {
 /// Steps of (4), each taken where the last one came to, the velocity linearised about the nodes. A step that does not
 /// decrease the energy, or loses the sheet, is taken again over a shorter time.
 bool FlowSolver::step_implicitly(FlowNodes& nodes) {
+  // Coupled: second derivatives and a matrix of blocks. Otherwise edges only.
   const bool coupled = dim_ - codim_ <= kMaxCoupled;
   const Points on_surface = nodes.corrected();
   const double before = energy(on_surface);
@@ -256,8 +277,10 @@ bool FlowSolver::step_implicitly(FlowNodes& nodes) {
     }
     trial.evaluate(evaluator_, q + move);
     if (trial.rank_margin() >= kRankMargin && keeps_to_its_sheet(nodes, trial) &&
+        // Energies of nodes as far off the surface as the noise of F are known no better than that.
         energy(trial.corrected()) <= before * (1 + 1e-13 + 0.01 * quiet_)) {
       std::swap(nodes, trial);
+      // A step that succeeds may be ten times as long in time the next time, at last infinitely long: Newton's.
       shift_ = shift_ < 1e-6 * slowest_ ? 0 : 0.1 * shift_;
       return true;
     }
@@ -273,6 +296,7 @@ FlowState FlowSolver::relax(FlowCurve start, double bound) {
   FlowState state{.nodes = FlowNodes(dim_, codim_), .widths = widths_};
   FlowNodes& nodes = state.nodes;
   nodes.evaluate(evaluator_, std::move(start.points));
+  // The least eigenvalue of the stiffness of m even intervals, to leading order.
   slowest_ = std::pow(std::numbers::pi / static_cast<double>(m), 2);
   shift_ = slowest_;
   quiet_ = kNoisyOffSurface;
@@ -294,6 +318,7 @@ FlowState FlowSolver::relax(FlowCurve start, double bound) {
     on_surface = nodes.corrected();
     mean = polyline_length(on_surface) / static_cast<double>(m);
     off = off_surface(nodes);
+    // The nearest that the nodes have come so far.
     quiet_ = std::min(quiet_, off / mean);
     repose = measure_repose(nodes, on_surface, widths_);
     const double noise = curvature_noise(on_surface, mean * widths_.minCoeff());
@@ -328,6 +353,7 @@ FlowState FlowSolver::relax(FlowCurve start, double bound) {
       state.outcome = FlowOutcome::at_rest;
     }
   }
+  // The curve that was judged is the one stepped onto the surface; explicit steps hand over the paper's own nodes.
   if (!explicit_step) nodes.evaluate(evaluator_, std::move(on_surface));
   return state;
 }
@@ -342,6 +368,7 @@ Index FlowSolver::first_conjugate_node(const FlowState& state) {
   compute_bases(state.nodes);
   assemble(state.nodes, 0, Metric::hessian);
   const Index row = matrix_.factor();
+  // Rows are those of inner nodes, t each; node 0 is fixed and has none.
   return row < 0 ? 0 : row / t + 1;
 }
 

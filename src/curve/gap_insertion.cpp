@@ -1,3 +1,7 @@
+// New nodes between successive ones, sec. 4 of the paper: all midpoints are projected freely in one batch; those that
+// fall back on an end, or find nothing, are projected again within the plane through the midpoint across the gap,
+// equation (5), in a second batch. A gap that neither closes stays as it is. Whether it falls in one cell, as the paper
+// has it, decides how far (5) may lead, and is counted.
 #include "curve/gap_insertion.hpp"
 
 #include <algorithm>
@@ -57,6 +61,7 @@ Index GapInsertion::insert(Points& points, const std::vector<bool>& wide) {
   for (Index j = 0; j < count; ++j) {
     Gap& gap = gaps[static_cast<std::size_t>(j)];
     const Vector edge = points.col(gap.first + 1) - points.col(gap.first);
+    // Figure 3: the nearest point of the surface lies beside A or B, and the gap would stay.
     const double place = edge.dot(fresh.col(j) - points.col(gap.first)) / edge.squaredNorm();  // A = 0, B = 1
     const bool back = place < kBeside || place > 1 - kBeside;
     gap.found = found(j) && !back;
@@ -72,6 +77,7 @@ Index GapInsertion::insert(Points& points, const std::vector<bool>& wide) {
       in_plane.col(a) = (points.col(gap.first) + points.col(gap.first + 1)) / 2;
       axes.col(a) = (points.col(gap.first + 1) - points.col(gap.first)) / gap.width;
       gap.across = !in_one_cell(points.col(gap.first), points.col(gap.first + 1));
+      // Within one cell the groove cannot be deeper than the cell.
       const double diagonal = lattice_.size * std::sqrt(static_cast<double>(dim_));
       plane_reach(a) =
           std::max((lattice_.size > 0 ? kPlaneReach : kFreePlaneReach) * gap.width, gap.across ? 0 : diagonal);

@@ -36,8 +36,10 @@ class HouseholderFrame {
       const double norm = i == 0 ? whole : column.norm();
       if (!(norm > 1e-11 * whole) || !std::isfinite(norm)) return false;
       const double head = column(0);
+      // The sign that does not cancel in head - pivot.
       const double pivot = head > 0 ? -norm : norm;
       column(0) = head - pivot;  // now H = I - beta v v^T
+      // 2 / |v|^2 with |v|^2 = 2 norm (norm + |head|).
       beta_(i) = 1 / (norm * (norm + std::abs(head)));
       upper_.col(i).head(i) = reflectors_.col(i).head(i);
       upper_(i, i) = pivot;
@@ -64,6 +66,7 @@ class HouseholderFrame {
   [[nodiscard]] auto tangents() const { return full_.template rightCols<Q>(full_.cols() - upper_.cols()); }  ///< d x q
 
   /// grad F_1 / |grad F_1|.
+  // R_11 is negative where the reflection turned the first gradient round.
   [[nodiscard]] auto first_normal() const { return (upper_(0, 0) < 0 ? -1.0 : 1.0) * full_.col(0); }
 
   /// What of |grad F_i| the gradients before it do not span: zero where J loses rank.

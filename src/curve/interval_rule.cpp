@@ -1,3 +1,6 @@
+// How long intervals should be: the least of eps_E, a share of the radius of curvature, and the length over which the
+// normal turns by a given angle; then made graded, so that neighbours differ by at most kMostGrowth (a sweep each way).
+// Nodes are spread by the integral of 1 / wanted, the number of wanted intervals up to a place.
 #include "curve/interval_rule.hpp"
 
 #include <algorithm>
@@ -48,6 +51,7 @@ FlowCurve spread_nodes(const PointsIn& points, const VectorIn& wanted, Index num
       arc += lengths(i);
       ++i;
     }
+    // Not past the end of the interval, which rounding of the sums could lead to.
     arcs.push_back(std::min(arc + (place - passed) * wanted(i), arc + lengths(i)));
     curve.widths(j - 1) = wanted(i);
   }

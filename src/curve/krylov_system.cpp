@@ -1,3 +1,8 @@
+// Newton's systems for many tangent directions, without a matrix (notation in krylov_system.hpp). Solves:
+// preconditioned conjugate gradients (Hestenes and Stiefel 1952) on tangent fields, the preconditioner being the
+// inverse of the stiffness K, projected. Second variation: Lanczos' method on the same preconditioned operator for its
+// least eigenvalue. A product costs one visit of the evaluator, and O(d) a node besides; kMostSteps and
+// kMostLanczosSteps bound their number.
 #include "curve/krylov_system.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -53,6 +58,7 @@ void KrylovSystem::resize(const Curve& curve) {
         if (column < 0 || row >= n - 2) continue;
         const double entry = curve.scale(e) * curve.element->stiffness(i, j);
         stiffness_.at(row, column) += entry;
+        // Fields that vanish at every element end: their rows are cut off, only the diagonal is kept to be factored.
         const bool at_end = i == p || j == 0;
         if (!at_end || i == j) inside_.at(row, column) += entry;
       }
@@ -66,6 +72,7 @@ void KrylovSystem::resize(const Curve& curve) {
 double KrylovSystem::turn(Index i, Index j) const {
   const Eigen::Map<const Eigen::MatrixXd> a(normals_.col(i).data(), d_, k_);
   const Eigen::Map<const Eigen::MatrixXd> b(normals_.col(j).data(), d_, k_);
+  // The normal spaces turn by the same angles as the tangent spaces.
   const double lost = static_cast<double>(k_) - (a.transpose() * b).squaredNorm();
   return std::asin(std::sqrt(std::clamp(lost, 0.0, 1.0)));
 }
@@ -91,6 +98,7 @@ void KrylovSystem::linearise(Evaluator& evaluator, Curve& curve, Frame& frame) {
   curve.weight.col(n - 1).setZero();
   curve.off.col(0).setZero();
   curve.off.col(n - 1).setZero();
+  // Right side -P (K (x + n) + mu Hess F n); `force` is K (x + n) already.
   evaluator.hessian_times({.n = n, .x = curve.x.data(), .weight = curve.weight.data()}, curve.off.data(),
                           right_.data());
   right_ = -right_ - curve.force;
@@ -128,13 +136,16 @@ bool KrylovSystem::factor(const Curve& curve, Evaluator& evaluator, bool curvatu
   precondition(stiffness_, r, z);
   s = z;
   double rz = dot(r, z);
+  // Inexact Newton: the residual matters by its square only, once the step is taken.
   const double enough = kForcing * kForcing * rz;
   const double rounding = kExact * kExact * curve.apply_stiffness(curve.x, product_, scratch_);
+  // As far as confirm_minimum asks for, but not below rounding.
   const double goal = std::max(std::min(enough, least_left_), std::min(enough, rounding));
   for (int step = 0; step < kMostSteps && rz > goal; ++step) {
     apply(curve, evaluator, curvature, s, product_);
     const double bend = dot(s, product_);
     if (!std::isfinite(bend)) return false;
+    // The s . A s are the pivots of A on the space searched so far: their negative ones count its negative directions.
     if (bend <= 0) {
       if (definite) {
         negative_ = s;
@@ -212,6 +223,7 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
         precondition(stiffness, u, v);
       }
     }
+    // No field is free: nothing can be negative.
     double size = std::sqrt(dot(u, v));
     if (!(size > 0)) {
       result.value = 1;
@@ -244,6 +256,7 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
           eigen.computeFromTridiagonal(Eigen::Map<const Vector>(alpha.data(), size_now),
                                        Eigen::Map<const Vector>(beta.data(), size_now - 1));
           result.value = eigen.eigenvalues()(0);
+          // The residual of the Ritz pair: an eigenvalue lies within it.
           const double error = link * std::abs(eigen.eigenvectors()(size_now - 1, 0));
           if (exhausted || error <= std::max(1e-3 * std::abs(result.value), 0.1 * kNeutral)) result.conclusive = true;
         }
@@ -260,6 +273,7 @@ KrylovSystem::Lowest KrylovSystem::lowest(const Curve& curve, Evaluator& evaluat
   double last = 1;
   for (const double value : eigen.eigenvalues()) {
     if (value >= -kNeutral) break;
+    // Without reorthogonalisation Lanczos' method finds an eigenvalue again and again: copies count once.
     if (result.num_negative == 0 || value > last + 1e-6) ++result.num_negative;
     last = value;
   }
@@ -270,9 +284,11 @@ Confirmation KrylovSystem::confirm_minimum(const Curve& curve, Evaluator& evalua
   const Lowest found = lowest(curve, evaluator, Fields::all, nullptr);
   conclusive_ = found.conclusive;
   num_negative_ = found.num_negative;
+  // Is every element alone positive definite? The mesh could not tell minima from saddles otherwise.
   if (num_negative_ == 0) resolved_ = lowest(curve, evaluator, Fields::within_elements, nullptr).value > 0;
+  // Energy left = r . A^-1 r / 2 <= r . G r / (2 value), value the least eigenvalue of G A.
   if (found.value > kLeast) {
-    const double most = 2 * found.value * energy;  // r . M r of a solution that leaves no more than this energy
+    const double most = 2 * found.value * energy;  // r . G r of a solution that leaves no more than this energy
     if (left_ > most && least_left_ > most) {
       least_left_ = most;
       return Confirmation::too_coarse;

@@ -86,7 +86,7 @@ class KrylovSystem {
   BandedCholesky stiffness_;   // K of the inner nodes
   BandedCholesky inside_;      // the same without the element ends
   bool has_negative_ = false;  // negative_ is one
-  double left_ = 0;            // r . M r of the last solution
+  double left_ = 0;            // r . G r of the last solution
   double least_left_ = 0;      // go on down to this
   int num_negative_ = 0;
   bool conclusive_ = false;

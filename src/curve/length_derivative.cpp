@@ -45,6 +45,7 @@ class ExtendedStages {
         evaluator_->hessian_times({.n = 1, .x = x.data(), .weight = weight.data()}, along.data(), out.data());
         bend(e) = along.dot(out);
       }
+      // F takes (x, c): the first d rows are derivatives by place, the rest by parameter.
       const Eigen::MatrixXd j = gradients.topRows(d_).transpose();  // k x d
       const Vector lambda = (j * j.transpose()).ldlt().solve(bend);
       // ds = |v| dt, and x'' by arc length is that by t over |v|^2.

@@ -1,3 +1,7 @@
+// The entrance to Newton's correction: options and start are checked here, and the solver is chosen by the sizes d and
+// k. Up to kManyTangents - 1 tangent directions systems are factored (direct_system.hpp), in kernels of fixed size for
+// one equation in 2, 3 and 4 dimensions; from there on they are solved by conjugate gradients (krylov_system.hpp). The
+// method itself is in newton_driver.hpp (meshes) and newton_kernel.hpp (one mesh).
 #include "taut/curve/newton.hpp"
 
 #include <string>

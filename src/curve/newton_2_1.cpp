@@ -1,3 +1,4 @@
+// The kernel for curves in the plane (d = 2, k = 1), in a file of its own so that kernels compile side by side.
 #include "curve/direct_system.hpp"
 #include "curve/newton_driver.hpp"
 

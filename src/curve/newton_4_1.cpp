@@ -1,3 +1,4 @@
+// The kernel for one equation in four dimensions, in a file of its own so that kernels compile side by side.
 #include "curve/direct_system.hpp"
 #include "curve/newton_driver.hpp"
 

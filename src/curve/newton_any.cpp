@@ -1,3 +1,4 @@
+// The kernel with sizes d and k at run time, for all that has no kernel of its own and few tangent directions.
 #include "curve/direct_system.hpp"
 #include "curve/newton_driver.hpp"
 

@@ -48,6 +48,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     Relaxation outcome = Relaxation::stalled;
     for (const double turn : {0.6, 0.2}) {  // a second, finer attempt where the first got lost
       outcome = solve_coarse(path, length, turn);
+      // A loop that shrinks to its only end is the geodesic of length 0.
       if (outcome == Relaxation::collapsed && path.col(0) == path.col(path.cols() - 1)) return of_a_point(start);
       if (outcome == Relaxation::converged || outcome == Relaxation::saddle || outcome == Relaxation::stalled) {
         const Nodes coarse = kernel_.nodes();
@@ -58,6 +59,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       } else {
         checker_.inspect(*evaluator_, kernel_, check_);
       }
+      // Only these may have come from too coarse a start.
       if (outcome != Relaxation::stalled && outcome != Relaxation::off_surface) break;
       if (kernel_.num_iterations() >= options_.max_iterations) break;
     }
@@ -80,6 +82,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     }
     kernel_.set_mesh(1, lengths_);
     kernel_.nodes() = nodes;
+    // No iterations: only the projection, and what a visit finds at the nodes.
     Relaxation outcome = kernel_.relax(*evaluator_, {.energy = 1, .off_surface = scale_, .max_iterations = 0}, context);
     if (outcome == Relaxation::converged || outcome == Relaxation::stalled) {
       start_fine([&](double t) -> VectorD { return curve.point(t); });
@@ -137,6 +140,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     for (int cycle = 0;; ++cycle) {
       const Relaxation outcome = kernel_.relax(*evaluator_, goal, *context_);
       if (outcome != Relaxation::stalled) return outcome;
+      // Without iterations a relaxation ends as stalled: here that means that the nodes are on the surface.
       if (cycle == kMostCuts || !refine_coarse(options_.leave_saddles ? kWideTurn : 0.25, &path, arcs)) break;
     }
     if (!options_.leave_saddles)
@@ -157,9 +161,11 @@ class NewtonDriver : public NewtonSolver::Backend {
     turning_.assign(static_cast<std::size_t>(m), 0.0);
     const auto seen = [&](Index e) { return kernel_.regular(e) && kernel_.regular(e + 1); };
     for (Index e = 0; e < m; ++e) {
+      // Tangent spaces do not see the normal's sign: a turn by more than a right angle shows in it only.
       if (seen(e)) turning_[static_cast<std::size_t>(e)] = flipped(e) ? 2 : kernel_.turn(e, e + 1);
     }
     if (m >= 3) {
+      // A singular end has no tangent space: its segment is taken to turn as the next one.
       if (!seen(0)) turning_.front() = turning_[1];
       if (!seen(m - 1)) turning_.back() = turning_[static_cast<std::size_t>(m - 2)];
     }
@@ -235,6 +241,7 @@ class NewtonDriver : public NewtonSolver::Backend {
       density[e] = turning_[e] / lengths_[e];
     }
     const auto wanted = static_cast<Index>(std::ceil(turn / turn_allowed(p)));
+    // The order of the method does the rest: elements that err are cut later.
     const Index m = std::clamp<Index>(wanted, 1, options_.max_elements);
     std::vector<double> lengths = equidistribute(lengths_, density, m);
     // Arc length as parameter: scale to the length found.
@@ -287,6 +294,8 @@ class NewtonDriver : public NewtonSolver::Backend {
     int stalls = 0;
     nonsmooth_ = false;
     for (int cycle = 0; cycle < kMaxCycles; ++cycle) {
+      // Relative energy left is twice the relative length: a hundredth of the tolerance is out of the way of what the
+      // mesh errs.
       RelaxationGoal goal{.energy = 0.02 * options_.tolerance,
                           .off_surface = std::max(1e-2 * surface_tolerance() * kernel_.period(), 1e-15 * scale_),
                           .max_iterations = options_.max_iterations - kernel_.num_iterations(),
@@ -298,12 +307,14 @@ class NewtonDriver : public NewtonSolver::Backend {
       if (!check_.regular) return Relaxation::singular;
       const double error = check_.length_error;
       if (outcome == Relaxation::converged && accurate(error) && kernel_.resolved()) break;
+      // A finer mesh often frees an iteration that stalled.
       if (outcome == Relaxation::stalled && (++stalls > 2 || kernel_.num_iterations() >= options_.max_iterations))
         break;
       const bool precise = error <= 0.5 * options_.tolerance * check_.length;
       // Closer and closer to a singular point: what the surface does there has not been seen yet.
       const bool closing_in = check_.weakest_gradient < kClosingIn * weakest;
       weakest = check_.weakest_gradient;
+      // An analytic surface gains far more than a digit a cycle.
       if (error > 0.1 * before && !precise && !closing_in) {
         nonsmooth_ = true;
         if (error > 0.9 * before && ++slow >= 4) break;
@@ -330,6 +341,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   bool refine_fine() {
     const int p = kernel_.degree();
     const Index m = kernel_.num_elements();
+    // Half of what accurate() allows: predictions are rough.
     const double share = 0.25 * options_.tolerance * check_.length / static_cast<double>(m);
     const double off_share = 0.5 * surface_tolerance() * check_.length;
     pieces_.assign(static_cast<std::size_t>(m), 1);
@@ -337,16 +349,19 @@ class NewtonDriver : public NewtonSolver::Backend {
     bool any = false;
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const double by_error = std::pow(check_.element_error[e] / share, 1.0 / (2 * p));
+      // Between the nodes the distance to the surface falls with the order of interpolation, p + 1.
       const double by_off = std::pow(check_.element_off[e] / off_share, 1.0 / (p + 1));
       const double wanted = std::max(by_error, by_off);
       if (wanted > 1) pieces_[e] = static_cast<int>(std::clamp(std::ceil(wanted), 2.0, 4.0));
       if (check_.element_corner[e] > CurveChecker<Frame>::kCorner) pieces_[e] = std::max(pieces_[e], 2);
       const bool dips_here = check_.element_dips[e] && looks_closely();
       if (dips_here && lengths_[e] > kShortestDip * kernel_.period()) pieces_[e] = 4;
+      // Shorter elements drown in rounding; a kink is told by its corner.
       if (lengths_[e] < 1e-7 * kernel_.period()) pieces_[e] = 1;
       any = any || pieces_[e] > 1;
       total += pieces_[e];
     }
+    // Accurate, but too coarse to tell minima: finer everywhere.
     if (!any && !kernel_.resolved()) {
       std::fill(pieces_.begin(), pieces_.end(), 2);
       total = 2 * m;
@@ -397,6 +412,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.length_error = check_.length_error + rounding();
     if (outcome != Relaxation::converged || !kernel_.settled()) {
       // Shortening steps, or a neutral direction: what is left may be many times what the next step would gain.
+      // dL = dE T / L, since E = L^2 / (2 T).
       const double gain = kernel_.decrement() * kernel_.period() / std::max(check_.length, 1e-300);
       result.length_error += std::max(4 * gain, 0.25 * options_.tolerance * check_.length);
     } else {
@@ -409,6 +425,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     result.residual = {.surface = check_.off_surface, .geodesic_curvature = check_.geodesic_curvature};
     result.num_iterations = kernel_.num_iterations();
     result.num_evaluated = kernel_.num_evaluated() + checker_.num_evaluated();
+    // The certificate: second variation positive definite, on a mesh that can tell.
     result.locally_shortest = outcome == Relaxation::converged && kernel_.resolved() && kernel_.minimum();
     if (at_rest(outcome)) result.index = kernel_.num_negative();
     if (result.index.value_or(0) > 0) find_conjugate(result);
@@ -519,6 +536,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   bool sample(const PointsIn& start, NewtonResult& result) {
     const int p = kernel_.degree();
     const Index m = kernel_.num_elements();
+    // 64 points at least on the whole curve, and twice as many as nodes.
     const Index each = std::max<Index>(2 * p, (64 + m - 1) / m);
     Points& points = result.points;
     points.resize(start.rows(), m * each + 1);
@@ -534,6 +552,7 @@ class NewtonDriver : public NewtonSolver::Backend {
     return surface_.domain() == nullptr || surface_.inside_domain(points, 1e-7 * check_.length).all();
   }
 
+  // Newton's steps onto the surface, all points a round; the ends stay. Polynomials leave it by their error only.
   void project_points(Points& points) {
     const Index n = points.cols();
     const Index d = surface_.dim();
@@ -558,6 +577,7 @@ class NewtonDriver : public NewtonSolver::Backend {
           frame.pseudo_inverse(value.col(j), scratch, step);
         }
         const double size = step.norm();
+        // A point that finds no surface near stays on the polynomial.
         if (!(size <= 0.1 * check_.length)) continue;
         largest = std::max(largest, size);
         points.col(j) -= step;

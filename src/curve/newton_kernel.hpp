@@ -128,6 +128,7 @@ class NewtonKernel {
     sunk_ = false;
     left_ = kUnknown;
     last_gain_ = 0;
+    // The shortening steps of sink() count as iterations, too.
     const int last = iterations_ + goal.max_iterations;
     while (true) {
       context.check_cancelled();
@@ -137,6 +138,7 @@ class NewtonKernel {
       ++iterations_;
       left_ = kUnknown;
       soft_energy_ = 0;
+      // The square of the length: 1e-11 of it is left.
       if (energy_ <= 1e-22 * start_energy || energy_ == 0) return Relaxation::collapsed;
       Progress progress = plan(evaluator, goal);
       if (progress == Progress::planned) progress = explore(evaluator, goal);
@@ -185,6 +187,7 @@ class NewtonKernel {
 
   // Where the steps promise that nothing is left worth another system, only the way to the surface is: is that so.
   bool arrived(Evaluator& evaluator, const RelaxationGoal& goal) {
+    // Conjugate gradients cannot confirm a minimum without a search of their own.
     if constexpr (!System::kFactors) return false;
     if (!(left_ <= worthless(goal)) || !goal.minimum) return false;
     if (system_.confirm_minimum(curve_, evaluator, left_) != Confirmation::minimum) return false;
@@ -199,6 +202,7 @@ class NewtonKernel {
   }
 
   // Energy not worth a step.
+  // No less than rounding, whatever is asked for.
   [[nodiscard]] double worthless(const RelaxationGoal& goal) const { return std::max(goal.energy, 4e-16) * energy_; }
 
   // Newton's step, or a shortening one where the energy is not convex.
@@ -209,7 +213,9 @@ class NewtonKernel {
     definite_ = system_.factor(curve_, evaluator, true, true);
     if (!definite_) {
       plan_.soft = system_.soft_direction(curve_, evaluator);
+      // Where any geodesic will do, the indefinite matrix is solved as it is: Newton's step to a saddle.
       plan_.descend = goal.minimum || system_.minimum() || !system_.factor(curve_, evaluator, true, false);
+      // Otherwise a shortening step, in the metric T^T K T.
       if (plan_.descend && !system_.factor(curve_, evaluator, false, true)) return end(Relaxation::stalled);
     }
     plan_.slope = system_.solve(step_);
@@ -219,6 +225,7 @@ class NewtonKernel {
     if (!plan_.flat || !definite_) return Progress::planned;
     switch (system_.confirm_minimum(curve_, evaluator, plan_.worthless)) {
       case Confirmation::minimum: break;
+      // The curve has not moved: the next round solves to a smaller residual.
       case Confirmation::too_coarse: return Progress::moved;
       case Confirmation::soft:
         plan_.soft = system_.soft_direction(curve_, evaluator);
@@ -231,6 +238,7 @@ class NewtonKernel {
 
   // Where all but soft directions have settled: along them, down a valley or off a saddle.
   Progress explore(Evaluator& evaluator, const RelaxationGoal& goal) {
+    // As long as hard directions still gain, soft ones are not worth a look.
     if (!goal.minimum || decrement_ > kInValley * energy_) return Progress::planned;
     const bool level = plan_.soft.found && std::abs(plan_.soft.relative()) < kLevel && degree() > 1;
     // Curvatures as small as that are known only from a curve on the floor of the valley.
@@ -239,6 +247,7 @@ class NewtonKernel {
       soft_energy_ = energy_along(plan_.soft);
       if (soft_energy_ > plan_.worthless) {
         system_.soft_step(step_);
+        // Over a flat valley the direction is good for a quarter of the length.
         step_ *= kReach * length() / plan_.soft.longest;
         sunk_ = false;
         if (slide(evaluator)) return Progress::moved;
@@ -256,9 +265,11 @@ class NewtonKernel {
 
   // With a worthless step left.
   Progress finish(Evaluator& evaluator, const RelaxationGoal& goal) {
+    // No gain left but along a direction that falls, and explore() found no way down along it.
     if (plan_.negative() && goal.minimum) return end(Relaxation::saddle);
     // Along a nearly neutral direction (conjugate ends) even a worthless step is long: then only go to the surface.
     const double longest = step_.colwise().norm().maxCoeff();
+    // A step s leaves the surface by about s^2 / 2 r: short enough not to spoil the nodes' place on it.
     const bool short_step = longest * longest <= goal.off_surface * period_;
     if (definite_ && !short_step && !sunk_ && degree() > 1 && goal.minimum &&
         2 * decrement_ < kLevel * curve_.apply_stiffness(step_, old_normal_, vector_)) {
@@ -273,6 +284,7 @@ class NewtonKernel {
       }
       return end(Relaxation::converged);
     }
+    // One more step costs no more than the projection alone.
     if (decrement_ > 1e-2 * goal.energy * energy_) return Progress::planned;
     curve_.x = base_;
     visit(evaluator);
@@ -295,6 +307,7 @@ class NewtonKernel {
 
   // Takes the step as far as it leads down.
   Progress advance(Evaluator& evaluator, const RelaxationGoal& goal) {
+    // On the floor of a valley many halvings only creep: a few, then slide along it.
     const bool valley = definite_ && plan_.descend && degree() > 1 && decrement_ <= kInValley * energy_;
     const bool fresh = sunk_;
     sunk_ = false;
@@ -364,6 +377,8 @@ class NewtonKernel {
       double worst = 0;
       for (Index j = 1; j + 1 < num_nodes(); ++j) {
         const auto e = static_cast<std::size_t>(std::min(j / degree(), num_elements() - 1));
+        // Distances between nodes are the measure of how far a step is credible, by the curve or, where it folds, by
+        // the mesh.
         const double near = std::max((curve_.x.col(j + 1) - curve_.x.col(j - 1)).norm() / 2,
                                      curve_.lengths[e] / (2 * static_cast<double>(degree())));
         const double share = curve_.off.col(j).norm() / near;
@@ -371,6 +386,7 @@ class NewtonKernel {
         // where F is far from linear (inside a thin body) a full step would fly away
         if (share > 0.5) base_.col(j) = curve_.x.col(j) + (0.5 / share) * curve_.off.col(j);
       }
+      // Newton's method does the rest: nodes only have to be in its reach.
       if (worst <= 0.05) return Relaxation::converged;
       curve_.x = base_;
     }
@@ -385,6 +401,7 @@ class NewtonKernel {
     const double slope = system_.solve(step_);
     decrement_ = 0.5 * std::abs(slope);
     if (search(evaluator, slope, false, kMostHalvings)) return true;
+    // Not even shortening gains anything: the curve is at rest as far as numbers tell.
     if (decrement_ <= std::max(goal.energy, 4e-16) * trial_energy_) failure_ = Relaxation::converged;
     return false;
   }
@@ -419,6 +436,7 @@ class NewtonKernel {
       system_.linearise(evaluator, curve_, frame_);
       if (!system_.factor(curve_, evaluator, false, true)) return;
       const double slope = system_.solve(step_);
+      // Hard directions gain by a large factor a step: when gains stay alike, a soft direction makes them.
       if (step > 2 && std::abs(slope) > 0.7 * before) ++standing;
       if (standing > 2 || std::abs(slope) <= kExact * energy_ || !search(evaluator, slope, false, kMostHalvings))
         return;
@@ -440,6 +458,7 @@ class NewtonKernel {
       step_ = size * along;
       if (search(evaluator, 0, true, kMostHalvings)) {
         sink(evaluator);
+        // More than rounding, or it was no way down.
         if (energy_ < before - 2e-15 * before) return true;
       }
       curve_.x = origin;
@@ -461,6 +480,7 @@ class NewtonKernel {
     trial_step_ = step_;
     old_normal_ = curve_.normal;
     const double longest = trial_step_.colwise().norm().maxCoeff();
+    // No node moves farther than a quarter of the length, nor farther round the surface than kMostTurn.
     share_ = std::min({1.0, 0.25 * length() / std::max(longest, 1e-300), largest_step(evaluator)});
     failure_ = Relaxation::stalled;
     for (int halving = 0; halving < most_halvings; ++halving, share_ /= 2) {
@@ -472,6 +492,7 @@ class NewtonKernel {
       }
       failure_ = Relaxation::stalled;
       if (!same_sheet(share_, off)) continue;
+      // Armijo's condition, with room for rounding.
       if (free || energy_ <= energy + 1e-4 * share_ * slope + 1e-14 * energy) return true;
     }
     return false;
@@ -485,6 +506,7 @@ class NewtonKernel {
     system_.bends(curve_, evaluator, step_, bends_);
     for (Index j = 1; j + 1 < num_nodes(); ++j) {
       const double bend = bends_(j);
+      // Normal curvature along s is |s . Hess F s| / (|grad F| |s|^2); times |s| it is an angle.
       const double reach = kMostTurn * curve_.jacobian.col(j).norm() * step_.col(j).norm();
       if (bend * share > reach) share = reach / bend;
     }
@@ -497,6 +519,7 @@ class NewtonKernel {
     for (Index j = 1; j + 1 < num_nodes(); ++j) {
       const double moved = alpha * trial_step_.col(j).norm();
       if (curve_.off.col(j).norm() > 0.3 * moved + 2 * off + 1e-12 * period_) return false;
+      // Only one normal has a sign to compare.
       if (k_ > 1) continue;
       if (curve_.normal.col(j).dot(old_normal_.col(j)) < 0.3 || drifts_apart(j)) return false;
     }

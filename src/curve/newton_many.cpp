@@ -1,3 +1,4 @@
+// The kernel for many tangent directions: systems are solved by conjugate gradients, never formed.
 #include "curve/krylov_system.hpp"
 #include "curve/newton_driver.hpp"
 

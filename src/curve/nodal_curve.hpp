@@ -78,6 +78,7 @@ struct NodalCurve {
         }
         scratch *= scale(e);
         out.col(first + i) += scratch;
+        // The same freedom again: adding a constant to the field changes nothing.
         sum += scratch.dot(field.col(first + i) - field.col(first));
       }
       total += sum;

@@ -1,3 +1,6 @@
+// Radii of curvature along a polyline by the vector triangle of the paper's Figure 2: the change of the unit tangent at
+// a node over the mean of its two intervals. An interval takes the mean of its ends; the first and last node, which
+// have one interval only, their neighbour's. Second order where intervals are even or nearly so.
 #include "curve/osculating_circles.hpp"
 
 namespace taut::detail {

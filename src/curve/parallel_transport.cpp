@@ -50,6 +50,7 @@ class FrameCarrier {
  private:
   void to_tangent_space(Eigen::MatrixXd& e) const {
     const auto q = stages_.field.normals(0);
+    // Twice: what the first pass leaves of the normal part is rounding of a large one.
     for (int pass = 0; pass < 2; ++pass) e -= q * (q.transpose() * e).eval();
   }
 
@@ -72,6 +73,7 @@ class FrameCarrier {
       next_.colwise() += from;
       const double change = (next_ - frames_).cwiseAbs().maxCoeff();
       frames_.swap(next_);
+      // E has entries of at most 1: nothing changes any more.
       if (!(change > std::numeric_limits<double>::epsilon() / 2)) break;
     }
     Eigen::MatrixXd end(d, q);
@@ -107,6 +109,7 @@ CarriedVectors parallel_transport(const Surface& surface, const SpectralCurve& c
     return result;
   }
   if (vectors.cols() == 0) return result;
+  // Of many vectors only a basis of their span has to be carried.
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(result.start);
   const Index rank = qr.rank();
   if (rank == 0) return result;

@@ -1,3 +1,8 @@
+// The paper's equation (5): the point of the surface in the plane through p' across a gap. Newton's method for F = 0
+// within the plane: the Jacobian J (k x d) is restricted to it, J Pi with Pi = I - a a^T, and a step is the shortest
+// solution there, -(J Pi)^+ F. A step is halved while the distance |J^+ F| does not fall; no point leaves a ball about
+// its p'. All points of a batch advance together, a visit a round, at most kMaxSteps; one that has arrived, or whose
+// steps have become shorter than the tolerance, drops out.
 #include "curve/plane_projection.hpp"
 
 #include <Eigen/QR>
@@ -57,6 +62,7 @@ Eigen::Array<bool, Eigen::Dynamic, 1> project_in_planes(Evaluator& evaluator, In
       const Index j = active[static_cast<std::size_t>(a)];
       const auto gradients = Eigen::Map<const Eigen::MatrixXd>(jacobian.data() + a * d * k, d, k);
       const double at_trial = residual_of(gradients, value.col(a));
+      // The first visit is at p' itself, with a step of zero and nothing known: always better, if finite.
       const bool better = at_trial < residual(j);
       if (!better && std::isfinite(residual(j))) {  // overshot: half the step
         step.col(j) *= 0.5;
@@ -72,10 +78,12 @@ Eigen::Array<bool, Eigen::Dynamic, 1> project_in_planes(Evaluator& evaluator, In
       }
       step.col(j) = step_in_plane(gradients, value.col(a), axes.col(j));
       if (!step.col(j).allFinite()) continue;
+      // Where the gradient in the plane is small, Newton's step would be as long as one likes.
       const double longest = 0.5 * radius(j);
       const double size = step.col(j).norm();
       if (size > longest) step.col(j) *= longest / size;
       const Vector reach = points.col(j) + step.col(j) - origin.col(j);
+      // To the border of the ball, in the direction of where it would have led.
       if (reach.norm() > radius(j)) step.col(j) = origin.col(j) + reach * (radius(j) / reach.norm()) - points.col(j);
       if (step.col(j).norm() > 0) still.push_back(j);
     }

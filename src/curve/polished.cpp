@@ -62,6 +62,7 @@ EndDirections end_directions(const Surface& surface, const NewtonResult& geodesi
   try {
     ExponentialMap rays(surface, {.conjugate = false, .points = false});
     const Eigen::MatrixXd normals = normals_at(surface, from);
+    // The curve's end tangents are tangent to the surface only as far as the curve is exact.
     best.departure = (best.departure - normals * (normals.transpose() * best.departure)).normalized();
     Vector v = best.departure;
     Eigen::MatrixXd start;
@@ -78,12 +79,14 @@ EndDirections end_directions(const Surface& surface, const NewtonResult& geodesi
       // Better by a little only: rounding is all that is left.
       const bool settled = ray > 0 && !(miss < 0.5 * best.miss);
       if (ray == 0 || miss < best.miss) best = {v, landed.direction, miss};
+      // On a curve (n = 1) there is one direction, and it was right or wrong from the start.
       if (settled || across == 0 || across > kMostAcross) break;
       if (ray == 0) {
         start = frame_across(normals, v);
         end = parallel_transport(surface, curve, start).end;
         inverse = Eigen::MatrixXd::Identity(across, across) / spread(surface, from, v, geodesic.length);
       }
+      // What is missed along the ray is its length's matter; only what is across can be aimed at.
       const Vector off = end.transpose() * missed;
       if (ray > 0) {  // Broyden's update: `inverse` takes what the last step changed to that step
         const Vector change = off - last_off;

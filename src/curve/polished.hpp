@@ -19,8 +19,7 @@ struct EndDirections {
 };
 
 /// Of a polished geodesic: its tangents, corrected by rays that are aimed at its end. Directions that a curve of 1e-13
-/// in length gives are good to some 1e-9 only; rays bring them to rounding times the spread of rays. `scales`: known
-/// ones of it.
+/// in length gives are good to some 1e-9 only; rays bring them to rounding times the spread of rays.
 [[nodiscard]] EndDirections end_directions(const Surface& surface, const NewtonResult& geodesic,
                                            const Context& context);
 

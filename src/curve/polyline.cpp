@@ -1,3 +1,5 @@
+// Plain geometry of polylines (d x m): lengths, points at arc lengths, how far they stray from their chords, and meshes
+// that equidistribute a density (de Boor's rule). All by one pass along the nodes; nothing is known of a surface here.
 #include "curve/polyline.hpp"
 
 #include <algorithm>
@@ -33,10 +35,12 @@ Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs) {
       ++segment;
       length = (nodes.col(segment + 1) - nodes.col(segment)).norm();
     }
+    // Clamped: sums of lengths and the arcs asked for differ by rounding.
     const double fraction = length > 0 ? std::clamp((arcs[i] - before) / length, 0.0, 1.0) : 0;
     const Index next = std::min(segment + 1, last);
     result.col(static_cast<Index>(i)) = nodes.col(segment) + fraction * (nodes.col(next) - nodes.col(segment));
   }
+  // The ends bit for bit, as fixed ends of what is built on it.
   result.leftCols<1>() = nodes.col(0);
   result.rightCols<1>() = nodes.col(last);
   return result;
@@ -67,6 +71,7 @@ std::vector<double> straying(const PointsIn& nodes, const std::vector<double>& a
     ++inside[i];
   }
   for (i = 0; i < result.size(); ++i) {
+    // Three nodes or fewer may be a zigzag of cells, not a bend.
     if (inside[i] < 4) result[i] = 0;
   }
   return result;
@@ -80,6 +85,7 @@ std::vector<double> equidistribute(const std::vector<double>& lengths, const std
     whole += lengths[i];
     mass += lengths[i] * density[i];
   }
+  // Where the density vanishes (a flat piece) intervals still end somewhere.
   const double floor = mass > 0 ? 0.25 * mass / whole : 1;
   double total = 0;
   for (std::size_t i = 0; i < lengths.size(); ++i) total += lengths[i] * (density[i] + floor);

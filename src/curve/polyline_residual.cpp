@@ -1,3 +1,6 @@
+// A polyline judged as it is: how far its sides are off the surface, |J^+ F| at kPartsPerSide places each, and the
+// discrete geodesic curvature at its corners by the vector triangle of the paper's Figure 2, the part tangent to the
+// surface. O(m) evaluations in three visits.
 #include "curve/polyline_residual.hpp"
 
 #include <Eigen/QR>

@@ -42,6 +42,7 @@ class RayField {
       weight_.assign(size(n), 1.0);
     } else {
       weight_.assign(size(k_ * k_ * n), 0.0);
+      // Each point stands k times in a batch, with the unit weight of one equation a time: then H_i v comes alone.
       for (Index j = 0; j < n * k_; ++j) weight_[size(j * k_ + j % k_)] = 1;
       many_x_.resize(size(d_ * k_ * n));
       many_v_.resize(size(d_ * k_ * n));
@@ -186,6 +187,7 @@ class RayField {
     double* r = &r_[size(j * k_ * k_)];
     double* y = &y_[size(j * k_)];
     double* lambda = &lambda_[size(j * k_)];
+    // Looked at before the factorisation, whose rank a NaN would spoil: not finite is told apart from singular.
     if (!value.col(j).allFinite()) return Outcome::not_finite;
     if (NormalSpace<D>::factor(dim(), k_, &jacobian_[size(j * d_ * k_)], q, r) < k_) {
       return Eigen::Map<const Vector>(&jacobian_[size(j * d_ * k_)], d_ * k_).allFinite() ? Outcome::singular
@@ -202,6 +204,7 @@ class RayField {
     for (Index i = 0; i < k_; ++i) {
       for (Index c = 0; c < dim(); ++c) a(c) -= y[i] * q[i * dim() + c];
     }
+    // lambda = R^-1 y, from the last equation up.
     for (Index i = k_; i-- > 0;) {
       lambda[i] = y[i];
       for (Index l = i + 1; l < k_; ++l) lambda[i] -= r[i + l * k_] * lambda[l];

@@ -102,6 +102,7 @@ class RayJacobi {
       auto e = frame_.col(b);
       e -= arrived.normals * (arrived.normals.transpose() * e);
       e -= arrived.v * arrived.v.dot(e);
+      // The collocation keeps the frame orthonormal to its order; this removes what is left, so that it never adds up.
       for (Index c = 0; c < b; ++c) e -= frame_.col(c) * frame_.col(c).dot(e);
       e.normalize();
     }
@@ -111,6 +112,7 @@ class RayJacobi {
   /// The eigenvalues that margin() speaks of, ascending; all -1 where the step is too long for them.
   [[nodiscard]] Eigen::Matrix<double, Q, 1> pivots(double h) const {
     using Values = Eigen::Matrix<double, Q, 1>;
+    // All fields vanish at the start itself: J_0^-1 does not exist, and no conjugate point can be so near.
     if (at_start_) return Values::Ones(q_);
     const auto a = transfer.topLeftCorner(q_, q_);
     const Block b = transfer.topRightCorner(q_, q_) / h;
@@ -120,6 +122,7 @@ class RayJacobi {
       const Block riccati = velocity_ * position_.partialPivLu().inverse();
       Block pivot = b.partialPivLu().solve(Block(a)) + h * riccati;
       if (!pivot.allFinite()) return Values::Constant(q_, -1);
+      // Symmetric but for rounding.
       pivot = ((pivot + pivot.transpose()) / 2).eval();
       return Eigen::SelfAdjointEigenSolver<Block>(pivot, Eigen::EigenvaluesOnly).eigenvalues();
     }
@@ -136,6 +139,7 @@ class RayJacobi {
         for (Index l = 0; l < k_; ++l) e -= normals.col(l) * normals.col(l).dot(e);
         frames_.col(i) = e / e.norm();
       }
+      // Of the last node; accept() turns it into the one direction left at the end of the step.
       end_frame_ = Eigen::Map<const Frame>(frames_.col(kStages - 1).data(), d_, 1);
       return;
     }
@@ -185,6 +189,7 @@ class RayJacobi {
       base << Block::Identity(q_, q_), h * t.node(i) * Block::Identity(q_, q_);
       Eigen::Map<Fields>(fields_.col(i).data(), q_, m) = base;
     }
+    // Fields on a flat surface: the part of the solution that R has nothing to do with.
     straight_ = fields_;
     const double enough = 1e-16 * std::max(1.0, h);  // a visit more would change a tenth of that at most
     for (int visit = 0; visit < 60; ++visit) {

@@ -128,7 +128,9 @@ class RayStep {
     state.normals = checks_.normals(last);
     state.acceleration = checks_.acceleration.col(last);
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * end_x_.template lpNorm<Eigen::Infinity>();
+    // How far the step itself may have come off the surface.
     const double drift = error_x + h_ * lift + rounding;
+    // Farther off than the step's own error explains: noise of F, which a projection would turn into a jump.
     const double share = off_surface > drift ? drift / off_surface : 1;
     state.x = end_x_ - share * (state.normals * checks_.value.col(last));
     state.v = end_v_ - state.normals * (state.normals.transpose() * end_v_);
@@ -157,6 +159,7 @@ class RayStep {
       basis.col(n) = ((2 * n - 1) * xi * basis.col(n - 1).array() - (n - 1) * basis.col(n - 2).array()) / n;
     }
     a_.noalias() = basis.lazyProduct(legendre_);
+    // A polynomial carried past its step grows without bound.
     const double most = 2 * std::max(from.acceleration.norm(), legendre_.cwiseAbs().maxCoeff());
     for (int i = 0; i < kStages; ++i) {
       if (!(a_.row(i).norm() <= most)) a_.row(i) = from.acceleration.transpose();
@@ -198,9 +201,11 @@ class RayStep {
       const double change = (next_ - a_).cwiseAbs().maxCoeff() * h_;
       a_.swap(next_);
       const double most = a_.cwiseAbs().maxCoeff() * h_;
+      // The velocity would turn by 20 radians within the step: Picard's iteration does not contract there.
       if (!(most <= 20)) return Verdict::diverged;
       // What the next visit would change: the changes shrink by a factor a visit.
       const double ahead = visits > 0 ? change * std::min(1.0, change / last_change) : change;
+      // 0.01: on flat pieces the acceleration is rounding itself.
       if (ahead <= enough * std::max(most, 0.01)) break;
       if (visits > 1 && change > 0.5 * last_change) {
         if (change <= 1e-9) {
@@ -250,6 +255,7 @@ class RayStep {
     // What becomes of a defect by the end varies along the step about like exp(bend tau), to 1, bend / 2, bend^2 / 12
     // of P_0, P_1, P_2.
     error_v = h_ * (m0 + bend / 2 * m1 + bend * bend / 12 * moment.row(2).norm()) + lift + std::abs(end_v_.norm() - 1);
+    // Twice integrated: the end's place takes the defect with a weight that falls towards the end.
     error_x = h_ * h_ * (m0 + m1) / 2;
     resolution = h_ * std::sqrt(defect.rowwise().squaredNorm().maxCoeff());
     // Inside a step the curve keeps to the surface as well as it is resolved; a crease it would leave the surface at.

@@ -1,3 +1,6 @@
+// A curve as polynomials of degree p on elements in a row: nodes d x (m p + 1), neighbours sharing the node between
+// them. Points are evaluated by the barycentric formula, which is stable anywhere in an element; t is clamped to the
+// curve.
 #include "taut/curve/spectral_curve.hpp"
 
 #include <algorithm>
@@ -31,6 +34,7 @@ SpectralCurve::SpectralCurve(int degree, std::vector<double> lengths, Points nod
 
 SpectralCurve::Place SpectralCurve::locate(double t) const {
   if (breaks_.empty()) throw InvalidArgument("an empty curve has no points");
+  // A break belongs to the element on its right; the last element holds its end.
   const auto next = std::upper_bound(breaks_.begin() + 1, breaks_.end() - 1, t);
   const Index element = next - breaks_.begin() - 1;
   const auto e = static_cast<std::size_t>(element);
@@ -49,6 +53,7 @@ Vector SpectralCurve::velocity(double t) const {
   const ReferenceElement& reference = ReferenceElement::of_degree(degree_);
   Vector basis(degree_ + 1);
   reference.basis(local, basis);
+  // d/dt from the derivative on [-1, 1].
   const double scale = 2 / lengths_[static_cast<std::size_t>(element)];
   return scale * (nodes_.middleCols(element * degree_, degree_ + 1) * (reference.derivative.transpose() * basis));
 }

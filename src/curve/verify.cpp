@@ -1,3 +1,5 @@
+// Checks a geodesic that somebody else claims: the ray from its start in its direction over its length must end where
+// they say. The miss along the ray is an error in length, the rest one in direction, times the amplification.
 #include "taut/curve/exponential_map.hpp"
 
 #include <string>
