@@ -1,3 +1,5 @@
+// Geodesics between the same points, told apart: two are one where lengths agree within errors and sixteen stations at
+// equal parts of the length lie close together. `unique` rests on the two shortest.
 #include "search/candidates.hpp"
 
 #include <algorithm>

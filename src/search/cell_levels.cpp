@@ -1,3 +1,7 @@
+// Which cells a question is answered on. The size h of level 0 is asked for, or chosen from the box or the samples
+// (cell_size.cpp) and, in space, halved until the normal turns moderately from cell to cell. Level l has h / 2^l. Cells
+// are made by Algorithm I (subdivide) or II (grow), once a level, under one lock; everything derived of them likewise.
+// Above kMostDimensions there are none, unless they grow lazily where a march goes.
 #include "search/cell_levels.hpp"
 
 #include <fmt/format.h>
@@ -41,6 +45,7 @@ std::optional<ProjectionResult> project_from_around(const Surface& surface, cons
   constexpr int kShells = 7;
   constexpr Index kDirections = 32;  // a shell, the same in every run
   const Index d = surface.dim();
+  // A fixed seed: the same directions in every run.
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   Points from(d, kShells * kDirections);
@@ -103,6 +108,7 @@ bool CellLevels::prepare(const PointsIn& near) {
   if (again) {
     bool inside = true;
     for (Index j = 0; j < near.cols(); ++j) inside = inside && extent_.window.contains(near.col(j));
+    // A box that the user gave is not made larger for points beyond it.
     if (inside || surface_.box()) {
       if (!plant(near)) return false;
       complete_.clear();
@@ -112,6 +118,7 @@ bool CellLevels::prepare(const PointsIn& near) {
   }
   if (surface_.dim() > kMostDimensions) {
     if (near.cols() == 0) return again;  // nothing to judge by yet
+    // Nothing is looked for in this box: it gives distances a scale.
     extent_.box = extent_.window = {near.rowwise().minCoeff(), near.rowwise().maxCoeff()};
     const double extent = std::max(box().extent().maxCoeff(), near.cwiseAbs().maxCoeff());
     size_ = request_.size > 0 ? request_.size : extent / (lazy() ? kLazyCellsPerRadius : kPointsPerSide);
@@ -138,6 +145,7 @@ bool CellLevels::plant(const PointsIn& near) {
   std::vector<Index> kept;
   for (Index j = 0; j < planted.cols(); ++j) {
     if (!found(j)) continue;
+    // A point in a cell that is there adds nothing: growth would have come the same way.
     if (made && complete_.front().cells->grid().find_point(planted.col(j)) != CellGrid::kNone) continue;
     missing = true;
     kept.push_back(j);
@@ -185,6 +193,7 @@ void CellLevels::refine_to_curvature() {
     // Of a size that was asked for no rims will be refined.
     resolved_ = mostly_resolved_ && (request_.size == 0 || nearly_everywhere);
     const bool enough = resolved_ && (i >= kRefinementsForRims || nearly_everywhere);
+    // Half the size has four times the cells.
     if (enough || !refines || 4 * coarsest.cells->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
     coarsest.cells = subdivided(size_, &coarsest.counts);
@@ -240,6 +249,7 @@ std::shared_ptr<const std::vector<std::int32_t>> CellLevels::known_components(in
 }
 
 std::shared_ptr<const SharpBends> CellLevels::sharp_bends(int level) {
+  // Samples' noise would pass for bends.
   if (surface_.dim() != 3 || surface_.codim() != 1 || lazy() || fitted()) return nullptr;
   const std::shared_ptr<const CellMap> known = map(level);
   const std::lock_guard lock(mutex_);

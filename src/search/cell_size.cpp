@@ -47,6 +47,7 @@ double cell_size_for_samples(const PointCloud& samples) {
   const double coarse = cell_size_for_box(box);
   if (samples.size() < 2 * kNeighbour) return coarse;
   const double finest = box.extent().maxCoeff() / kMostCellsPerSide;
+  // Two spacings: a cell holds a few samples of one layer.
   return std::clamp(2 * sample_spacing(samples.points), std::min(finest, coarse), coarse);
 }
 

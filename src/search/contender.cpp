@@ -18,6 +18,7 @@ constexpr double kSingularAlike = 1e-7;
 
 Contender contender(Points start, NewtonResult geodesic) {
   const double error = std::max(geodesic.length_error, kLeastError * geodesic.length);
+  // The error itself would make the ways on both sides of a singular point one.
   const double alike = geodesic.status == Status::ok ? geodesic.length_error : kSingularAlike * geodesic.length;
   return {std::move(start), candidate_of(geodesic), std::move(geodesic.curve), error, alike};
 }

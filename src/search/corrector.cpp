@@ -1,3 +1,11 @@
+// From starts to the shortest geodesic. With Newton's method: (1) all starts that may still win are corrected to three
+// digits, several side by side; (2) geodesics that come near each other are spliced into further starts; (3) what may
+// still be the shortest, least first, is corrected to the tolerance asked for; (4) a few starts from which nothing
+// came, though they are as short as what was found, are brought to rest gently first. A start is given up when it is
+// longer than the shortest found by more than starts' lengths are known to err (Hope). With the paper's flow, or none,
+// every start within that bound is corrected or measured as it is.
+//
+// How many are worked on at a time changes the work done in vain, never what is taken: results are taken in order.
 #include "search/corrector.hpp"
 
 #include <algorithm>
@@ -68,6 +76,7 @@ class Hope {
   void found(double length) { shortest_ = std::min(shortest_, length); }
   /// A start that promised one length has led to another.
   void doubt(double promised, double length) {
+    // Starts that came out shorter than promised: so may those behind them.
     error_ = std::max(error_, kCorrectionRules.error_factor * (promised / length - 1));
   }
 
@@ -100,6 +109,7 @@ void Corrector::in_waves(std::size_t n, const Hopeful& hopeful, const Work& work
   const auto at_a_time = std::min(CorrectionRules::kAtATime, static_cast<std::size_t>(num_threads(context_)));
   for (std::size_t first = 0; first < n && hopeful(first);) {
     std::size_t last = std::min(n, first + at_a_time);
+    // Starts come shortest first: those without hope are at the end. The first one has it.
     while (!hopeful(last - 1)) --last;
     parallel_for(context_, 0, static_cast<Index>(last - first), 1,
                  [&](Index i, Index) { work(first + static_cast<std::size_t>(i), static_cast<std::size_t>(i)); });
@@ -160,6 +170,7 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
     case CorrectionMethod::newton: {
       const bool begun = choice.rough.num_elements() > 0;
       if (begun) geodesic = newton(worker).refine(choice.rough, context_);
+      // What three digits took for a geodesic may be none: then from the start itself.
       if (!begun || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
       break;
     }
@@ -214,6 +225,7 @@ std::vector<Corrector::Choice> Corrector::choose(const Starts& given) {
         // What the curve may yet come to, at least, if it came to rest.
         const bool at_rest = std::isfinite(geodesics[j].length_error);
         const double at_least = at_rest ? geodesics[j].length - geodesics[j].length_error : start.length;
+        // Kept, and tried once more to the full tolerance.
         choices.push_back({std::min(at_least, start.length / (1 + given.error)), start.points, {}});
       });
   std::vector<PathCandidate> known;

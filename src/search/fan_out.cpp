@@ -1,3 +1,6 @@
+// Starts from a point that the surface bends round within a cell, such as the tip of a spike: rays of one length in all
+// directions, long enough to end where cells can tell ways apart, and from each tip down the field to the other end.
+// The total length as a function of the angle has a minimum for each way; more rays where neighbours wind apart.
 #include "search/fan_out.hpp"
 
 #include <Eigen/Geometry>
@@ -125,6 +128,7 @@ std::vector<StartPath> fan_out(const Surface& surface, const Ground& ground, con
     return std::isnan(rest) ? std::numeric_limits<double>::infinity() : fan.length() + rest;
   };
   for (Index i = 0; i < n; ++i) {
+    // Minima round the circle; of equal neighbours the last.
     if (!(whole(i) <= most) || whole(i + n - 1) < whole(i) || whole(i + 1) <= whole(i)) continue;
     const Points down = descend_over(surface, cells, ground.map.get(), field, tips.col(i));
     if (down.cols() < 2) continue;

@@ -1,3 +1,4 @@
+// What is known of one pair of points, brought up to date. Efforts add up over all rungs and boxes, also those in vain.
 #include "search/inquiry.hpp"
 
 namespace taut::detail {

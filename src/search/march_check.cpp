@@ -1,3 +1,6 @@
+// How wrong are distances marched on coarser cells? Those on finer ones stand for the truth: from two sources, far
+// apart in the order of the cells, to up to 1,000 cells each. A cell that only one of both fields reaches counts as
+// infinitely wrong.
 #include "search/march_check.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Turns of the normal space between all valid cells that share a face, each pair once: a cell looks along the positive
+// axes only. Blocks of cells are worked on in parallel and put together in order.
 #include "search/normal_turns.hpp"
 
 #include <algorithm>

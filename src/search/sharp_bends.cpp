@@ -1,3 +1,7 @@
+// Where a surface in space turns by more than kSharp radians over the size of a cell, seen by pairs of neighbouring
+// cells' points: near enough to belong together, far enough apart to tell. Turns near pi are two sheets back to back.
+// Cells around such a place count, too. At single points the normal itself is differenced, which sees needles thinner
+// than a cell.
 #include "search/sharp_bends.hpp"
 
 #include <Eigen/Geometry>
@@ -34,6 +38,7 @@ SharpBends::SharpBends(const Surface& surface, const SurfaceCells& cells, const 
   const double gentle = std::cos(kSharp * kShortestArm);
   const auto is_sharp = [&](Index i, const std::vector<Index>& around) {
     return std::ranges::any_of(around, [&](Index j) {
+      // Most pairs end here, before any arc cosine.
       if (cells.normals(i).col(0).dot(cells.normals(j).col(0)) >= gentle) return false;
       const double apart = (cells.point(i) - cells.point(j)).norm() / h;
       const double turn = normal_turn(cells, i, j);

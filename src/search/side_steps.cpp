@@ -1,3 +1,5 @@
+// Further starts where a known way passes a sharp bend: from its middle a short ray to the left and one to the right,
+// and from each tip down both fields. A tip's s = u_p + u_q bounds the way through it; those too long are left.
 #include "search/side_steps.hpp"
 
 #include <Eigen/Geometry>

@@ -1,3 +1,6 @@
+// Starts from parts of known geodesics: up to where one comes near another, and from there along that one. Stations at
+// sixteen equal parts stand for a curve, so that all pairs cost some hundreds of distances each. Corners at the bridge
+// are left to the correction.
 #include "search/splices.hpp"
 
 #include <algorithm>
@@ -66,6 +69,7 @@ StartPath splice(const Track& first, const Track& second, const Crossing& at) {
   constexpr double kStation = 1.0 / kStations;
   const Index before = at.i - kBridge;
   const Index after = kStations - at.j - kBridge;
+  // From a station before the crossing to one behind it: along both curves, and across the gap.
   const double bridge = std::hypot((first.length + second.length) * kStation * kBridge, at.gap);
   StartPath path;
   path.length =

@@ -1,3 +1,8 @@
+// Starts between two points, four ways. By the table of landmarks (many pairs on a surface); by distance fields from
+// both ends over cells, with all rivals, past sharp bends by extra rays; by one field and a descent, where rivals are
+// not asked for; by walks, where there are no cells. A table is made where it costs less than marching for the pairs to
+// come: on cells as coarse as the bends allow, with as few landmarks as tell ways apart, and it is believed only as far
+// as sampled geodesics bear it out.
 #include "search/start_finder.hpp"
 
 #include <algorithm>
@@ -74,6 +79,7 @@ void StartFinder::tabulate(Index num_pairs) {
   const std::shared_ptr<SurfaceCells> fine = levels_.cells(0, Points(surface_.dim(), 0));
   if (table_ || !suits) return;
   const auto num_fine = static_cast<double>(fine->num_valid());
+  // Two marches a pair, each over about all cells; a table takes one march of its own cells a landmark.
   const double most_work = kTableRules.worthwhile * static_cast<double>(num_pairs) * 2 * num_fine;
   std::optional<MarchCheck> check;
   // As coarse as it may be: the turn need not grow with the cells' size, where a rim is involved it jumps.
@@ -97,6 +103,7 @@ void StartFinder::tabulate(Index num_pairs) {
     DistanceTable table(surface_, std::move(*cells), static_cast<Index>(num_landmarks), context_);
     const TableError error = measure_error(table);
     const double wrong = std::max(error.too_long, error.too_short);
+    // On the finest cells the table is kept with the error it has: nothing better is to be had.
     if (wrong > kTableRules.wrong && !finest) continue;
     table_ = std::move(table);
     table_error_ = std::clamp(kTableRules.safety * wrong, kTableRules.wrong, kRivalRules.excess);
@@ -181,6 +188,7 @@ Starts StartFinder::find_within(double longest, const Ground& ground, const Vect
       (p - q).norm() > kRivalRules.near_cells * ground.cells->grid().size()) {
     from_q.emplace();
     parallel_for(context_, 0, 2, 1, [&](Index first, Index last) {
+      // A range may hold both: first = 0, last = 2 on one thread.
       if (first == 0) from_p = march_towards(ground, p, q, longest);
       if (last == 2) from_q = march_towards(ground, q, p, longest);
     });
