@@ -1,3 +1,6 @@
+// A set of cells of one size: integer coordinates in the order they came, and a hash of them (open addressing, linear
+// probing, the cells' numbers in the slots). A face lies at origin + size c, computed in one way everywhere, and a
+// point belongs to the cell whose faces say so. Sizes: 4 d bytes a cell and 6.4 to 12.8 for the table.
 #include "taut/cells/cell_grid.hpp"
 
 #include <algorithm>
@@ -57,6 +60,7 @@ void find_neighbours(Index dim, const std::int32_t* cell, const std::vector<std:
     }
     for (Index axis = 0; axis < d; ++axis) {
       if (++at[axis] <= cell[axis] + 1) break;
+      // Carries to the next axis, like an odometer.
       at[axis] = cell[axis] - 1;
     }
   }
@@ -70,6 +74,7 @@ CellGrid::CellGrid(Vector origin, double size) : origin_(std::move(origin)), siz
     throw InvalidArgument("the cell size must be a positive length, not " + detail::describe(size));
   }
   if (!origin_.allFinite()) throw InvalidArgument("the grid's origin is not finite");
+  // Faces must differ by more than rounding, or points would fall between cells.
   if (size < 64 * std::numeric_limits<double>::epsilon() * origin_.lpNorm<Eigen::Infinity>()) {
     throw InvalidArgument("cells of size " + detail::describe(size) + " cannot be told apart by rounding at " +
                           detail::describe(origin_) + ": take larger cells");
@@ -94,6 +99,7 @@ Box CellGrid::box(Index i) const {
 void CellGrid::cell_of(const VectorIn& x, std::span<std::int32_t> cell) const {
   for (Index axis = 0; axis < dim(); ++axis) {
     const double position = std::floor((x(axis) - origin_(axis)) / size_);
+    // Written so that NaN is refused, too.
     if (!(std::abs(position) < kMaxCoordinate)) {
       throw InvalidArgument("coordinate " + std::to_string(axis + 1) + " of a point, " + detail::describe(x(axis)) +
                             ", lies more than 2^30 cells of size " + detail::describe(size_) +
@@ -109,6 +115,7 @@ void CellGrid::cell_of(const VectorIn& x, std::span<std::int32_t> cell) const {
 
 Index CellGrid::find_point(const VectorIn& x) const {
   for (Index axis = 0; axis < dim(); ++axis) {
+    // Asking about a point far away is no mistake: there is no cell.
     if (!(std::abs((x(axis) - origin_(axis)) / size_) < kMaxCoordinate - 1)) return kNone;
   }
   std::vector<std::int32_t> cell(static_cast<std::size_t>(dim()));
@@ -213,6 +220,7 @@ bool morton_less(std::span<const std::int32_t> a, std::span<const std::int32_t> 
   std::size_t axis = a.size();
   for (std::size_t i = a.size(); i-- > 0;) {
     const std::uint32_t difference = static_cast<std::uint32_t>(a[i]) ^ static_cast<std::uint32_t>(b[i]);
+    // The second condition: the highest bit of `difference` is above that of `highest`.
     if (highest < difference && highest < (highest ^ difference)) {
       highest = difference;
       axis = i;
@@ -222,6 +230,8 @@ bool morton_less(std::span<const std::int32_t> a, std::span<const std::int32_t> 
 }
 
 Vector lattice_origin(const VectorIn& x, double size) {
+  // Origins of grids of one size near each other are the same, so that their cells are. Off by the golden ratio, since
+  // surfaces like to lie on round coordinates, where cells would touch them with their faces.
   const double lattice = size * 0x1p28;
   Vector origin(x.size());
   for (Index axis = 0; axis < x.size(); ++axis) {

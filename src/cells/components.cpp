@@ -1,3 +1,5 @@
+// Connected components of cells, by union and find over the 3^d - 1 neighbours, or across faces only. Labels count from
+// 0 in the order of the components' first cells, whatever the order of the unions.
 #include "taut/cells/find_cells.hpp"
 
 #include "core/disjoint_sets.hpp"
@@ -14,6 +16,7 @@ Components numbered(detail::DisjointSets& sets, Index n, Keep keep) {
     if (!keep(i)) continue;
     const std::uint32_t root = sets.find(static_cast<std::uint32_t>(i));
     result.label[static_cast<std::size_t>(i)] =
+        // A root is the least cell of its set: it has its label before all others.
         root == static_cast<std::uint32_t>(i) ? result.count++ : result.label[root];
   }
   return result;
@@ -49,6 +52,7 @@ Components components_across_faces(const CellGrid& grid) {
   for (Index i = 0; i < n; ++i) {
     const auto cell = grid.cell(i);
     before.assign(cell.begin(), cell.end());
+    // The cell before it on each axis: every pair is met from one side.
     for (auto& c : before) {
       --c;
       const Index j = grid.find(before);

@@ -1,3 +1,4 @@
+// Tests many cells of one level on all cores. Shares are fixed and put together in order: threads change nothing.
 #include "cells/crossed.hpp"
 
 #include "cells/refine.hpp"
@@ -13,6 +14,7 @@ std::vector<std::int32_t> crossed(CrossingPool& pool, Index dim, const std::vect
   parallel_for(context, 0, n, kShare, [&](Index first, Index last) {
     const CrossingPool::Loan test(pool);
     const std::vector<std::int32_t> share(cells.begin() + first * dim, cells.begin() + last * dim);
+    // From a level to the same level: a test without halving.
     Refiner(*test, dim).refine(share, level, level, found[static_cast<std::size_t>(first / kShare)]);
   });
   std::vector<std::int32_t> all;

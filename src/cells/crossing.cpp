@@ -1,3 +1,6 @@
+// The one test of Algorithms I and II, in blocks of kBlock cells. Each part drops cells of the block that the surface
+// cannot cross, cheapest first: the box; interval bounds of F over the cell; the mean value theorem with bounds of the
+// Jacobian, or, where F has no bounds, its Taylor polynomial of second order; the domain. What is left may be crossed.
 #include "cells/crossing.hpp"
 
 #include <algorithm>
@@ -134,6 +137,7 @@ void CrossingTest::test_bounds() {
     for (Index i = slot * k; i < (slot + 1) * k; ++i) {
       const double lower = value_lower_[idx(i)];
       const double upper = value_upper_[idx(i)];
+      // For several equations one of them off 0 is enough.
       if (lower > 0 || upper < 0 || (std::isnan(lower) && std::isnan(upper))) return false;
     }
     return true;
@@ -160,6 +164,7 @@ void CrossingTest::test_slopes() {
   const double above = 1 + 2 * static_cast<double>(d + 4) * std::numeric_limits<double>::epsilon();
   retain([&](Index slot) {
     for (Index i = slot * k; i < (slot + 1) * k; ++i) {
+      // Not 0: products of tiny numbers may have been rounded to 0.
       double reach = std::numeric_limits<double>::min();
       for (Index a = 0; a < d; ++a) {
         const std::size_t at = idx(slot * d + a);
@@ -195,12 +200,14 @@ void CrossingTest::test_taylor() {
       for (Index a = 0; a < d; ++a) {
         const double half = 0.5 * (upper_[idx(slot * d + a)] - lower_[idx(slot * d + a)]);
         const double slope = std::abs(jacobian_[idx((slot * k + i) * d + a)]);
+        // A surface that only touches a face is kept, though F there is rounding.
         reach += slope * (half + kRounding * (half + std::abs(centre_[idx(slot * d + a)])));
         for (Index b = 0; b < d; ++b) {
           reach += 0.5 * kTaylorSafety * half * half * std::abs(hessian_[idx((slot * d + a) * d + b)]);
         }
       }
       const double value = value_lower_[idx(slot * k + i)];
+      // A reach of NaN (no derivatives) keeps the cell.
       return !std::isnan(value) && !(std::abs(value) > reach);
     });
   }
@@ -227,12 +234,14 @@ void CrossingTest::test_domain() {
           const double half = 0.5 * (upper_[idx(slot * d + a)] - lower_[idx(slot * d + a)]);
           reach += half * std::abs(jacobian_[idx((slot * m + i) * d + a)]);
         }
+        // An upper bound of the domain over the cell, to first order.
         value_upper_[idx(slot * m + i)] += kDomainSafety * reach;
       }
     }
   }
   retain([&](Index slot) {
     for (Index i = slot * m; i < (slot + 1) * m; ++i) {
+      // Negative in the whole cell: outside.
       if (value_upper_[idx(i)] < 0 || std::isnan(value_upper_[idx(i)])) return false;
     }
     return true;

@@ -47,6 +47,7 @@ class CrossingPool {
         return test;
       }
     }
+    // Outside the lock: evaluators take time to make.
     return std::make_unique<CrossingTest>(surface_, origin_, size_);
   }
 

@@ -65,6 +65,7 @@ constexpr CubeLoops trace_loops(int mask, int flipped) {
     if (is_ambiguous(mask, face)) {
       for (int i = 0; i < 4; ++i) {
         const bool inside = (mask >> face[i] & 1) != 0;
+        // Corners that a segment goes round: the inside ones by the rule, the outside ones where flipped.
         if (inside == (f == flipped)) continue;
         parent[root(cube_edge(face[i], face[(i + 1) % 4]))] = root(cube_edge(face[i], face[(i + 3) % 4]));
       }
@@ -98,6 +99,7 @@ constexpr CubeLoops trace_loops(int mask, int flipped) {
     const int first = result.loop[cube_edge(face[0], face[1])];
     bool joined = true;
     for (int i = 1; i < 4; ++i) joined = joined && result.loop[cube_edge(face[i], face[(i + 1) % 4])] == first;
+    // All four crossed edges of the face are on one loop.
     if (joined) result.joined_face = static_cast<std::int8_t>(f);
   }
   return result;

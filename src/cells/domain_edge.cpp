@@ -1,3 +1,5 @@
+// A point on the edge of the domain: Newton's method for F = 0 and those inequalities that are broken, taken as
+// equations. Which are broken is looked at once, at the start; a point that breaks others on the way is given up.
 #include "cells/domain_edge.hpp"
 
 #include <algorithm>
@@ -54,9 +56,11 @@ bool DomainEdge::pull(Eigen::Ref<Eigen::MatrixXd> x, const ProjectionOptions& op
   domain_->evaluate({.n = 1, .x = x.data(), .value = value.data()});
   broken_.clear();
   for (Index i = 0; i < value.size(); ++i) {
+    // A NaN counts as broken.
     if (!(value(i) >= 0)) broken_.push_back(i);
   }
   const Index num_equations = k + static_cast<Index>(broken_.size());
+  // More equations than coordinates have no common point in general.
   if (num_equations > d) return false;
   Stacked stacked(*function_, k, *domain_, value.size(), broken_, d);
   Eigen::MatrixXd moved = x;

@@ -1,3 +1,6 @@
+// Layers of cells around those that are crossed, across faces: what the paper's fast marching needs to converge. By
+// Memoli and Sapiro (2001) the envelope's width must go to zero more slowly than the cells' size; the law here is
+// kLayers sqrt(n) layers for n cells across the surface.
 #include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
@@ -24,6 +27,7 @@ CellGrid thicken(const CellGrid& cells, Index layers, const Context& context) {
   std::vector<std::int32_t> neighbour(static_cast<std::size_t>(cells.dim()));
   Index begin = 0;
   for (Index layer = 0; layer < layers; ++layer) {
+    // Only cells of the last layer have neighbours that are not there yet.
     const Index end = envelope.num_cells();
     for (Index i = begin; i < end; ++i) {
       const auto cell = envelope.cell(i);

@@ -1,3 +1,8 @@
+// Where is the surface? Given box and samples answer at once. With interval bounds: a cube of +-2^24 is halved, cells
+// that cannot be crossed are dropped, and the box of the rest is halved again, until it fits within a cell in some
+// kCellsAcross; that is a proof, also of emptiness. On axes where the surface reaches the end of the cube it is taken
+// to have no end, and a window around the points of interest stands for it. Without bounds: starts scattered over cubes
+// of growing size are projected, and a box counts as found when three sizes in a row give the same one.
 #include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
@@ -72,6 +77,7 @@ Shrunk shrink_once(const Surface& surface, const Box& box, const Context& contex
   for (;; --level) {
     cells = detail::crossed(pool, d, untested, level, context);
     if (cells.empty()) return {};
+    // Enough to see where the outermost are; the rest of the levels is for those alone.
     if (level == 0 || static_cast<Index>(cells.size()) > few_cells * d) break;
     untested.clear();
     detail::append_halves(d, cells.data(), static_cast<Index>(cells.size()) / d, untested);
@@ -93,6 +99,7 @@ Shrunk shrink_once(const Surface& surface, const Box& box, const Context& contex
       return;
     }
     const double face = grid.face(axis, *outermost);
+    // Each task has a bound of its own to write.
     if (side < 0) found.box.lower(axis) = std::max(box.lower(axis), face);
     if (side > 0) found.box.upper(axis) = std::min(box.upper(axis), face);
   });
@@ -220,6 +227,7 @@ SurfaceExtent by_trial(const Surface& surface, const PointsIn& near, const Conte
     context.check_cancelled();
     const Points arrived = trial(surface, centre, half_width);
     any = any || arrived.cols() > 0;
+    // A few that arrive by chance tell nothing.
     if (arrived.cols() < kTrials / 16) {
       boxes.clear();
       continue;
@@ -236,6 +244,7 @@ SurfaceExtent by_trial(const Surface& surface, const PointsIn& near, const Conte
       return all_in(with_margin(box, kTrialMargin));
     }
   }
+  // Boxes that keep growing with the starts: a surface without end.
   if (!any) throw_empty(surface, "that Newton's iteration finds from anywhere within +-1e6");
   SurfaceExtent extent = all_in(around(near, d));
   extent.whole = cube(Vector::Zero(d), reach_about(near));

@@ -1,3 +1,6 @@
+// The paper's Algorithm II: cells that hold seeds are tested, and crossed ones pass the question on to their 2 d
+// neighbours across faces, front by front, until nothing new is found. Every cell is tested once, so the work is O(d)
+// tests a crossed cell whatever the size of the box. It finds the components that hold seeds, and no others.
 #include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
@@ -34,6 +37,7 @@ class Growth {
   std::vector<Index> seed(const PointsIn& seeds) {
     Cells cell(static_cast<std::size_t>(d_));
     std::vector<Index> cells;
+    // Many samples share a cell: inserting says which.
     for (Index j = 0; j < seeds.cols(); ++j) {
       tested_.cell_of(seeds.col(j), cell);
       cells.push_back(tested_.insert(cell));
@@ -146,6 +150,7 @@ CellGrid grow(const Surface& surface, const PointsIn& seeds, const GrowOptions& 
   }
   growth.run(options.most_cells);
   if (options.counts != nullptr) *options.counts = growth.counts();
+  // In Morton order, as Algorithm I gives them: near in space is near in memory.
   return growth.crossed().sorted();
 }
 

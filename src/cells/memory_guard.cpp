@@ -1,3 +1,4 @@
+// One message for all that runs out of memory while cells are made: how many there are, and what helps.
 #include "cells/memory_guard.hpp"
 
 #include <string>

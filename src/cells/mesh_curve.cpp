@@ -1,3 +1,6 @@
+// Curves in the plane as segments, the dual of the cells: a vertex for each piece of curve in a cell, brought onto the
+// curve by Newton's method, and a segment across each crossed edge between two cells. Where inside corners lie
+// diagonally opposite, the pieces are kept apart.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,6 +82,7 @@ CurveMesh mesh_curve(const Surface& surface, const CellGrid& grid, const MeshOpt
       const std::size_t low = (e & 1) << (1 - e / 2);
       int a = corners[c][low];
       int b = corners[c][low | std::size_t{1} << (e / 2)];
+      // a is the inside end.
       if (values(b) < values(a)) std::swap(a, b);
       const double t = values(a) / (values(a) - values(b));
       const double s = std::isnan(t) ? 0.5 : std::clamp(t, 0.0, 1.0);
@@ -122,6 +126,7 @@ CurveMesh mesh_curve(const Surface& surface, const CellGrid& grid, const MeshOpt
       if (there < 0 || vertices.valid[static_cast<std::size_t>(here)] == 0 ||
           vertices.valid[static_cast<std::size_t>(there)] == 0)
         continue;
+      // Segments that cross the domain's edge stay; their outer ends are moved onto it below.
       if (!in_domain(here) && !in_domain(there)) continue;
       // Walking along axis 1 (up) the left side is at lower x; walking along axis 0 (right) it is at higher y.
       const bool low_is_inside = values(corners[c][low]) < values(corners[c][low | std::size_t{1} << axis]);

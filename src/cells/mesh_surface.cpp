@@ -1,3 +1,7 @@
+// The zero set as triangles, dual to the cells (Ju et al. 2002; manifold by Wenger 2013, sec. 3.5): each piece of
+// surface in a cell has a vertex, brought onto the surface by Newton's method; each crossed edge of the grid gives a
+// quad of the vertices around it, cut in two. Signs at corners decide about the topology; F is evaluated once a corner.
+// A domain's edge is met by one more ring of cells, whose vertices are moved onto it.
 #include "taut/cells/mesh_surface.hpp"
 
 #include <Eigen/Geometry>
@@ -83,11 +87,13 @@ Pieces find_pieces(const Corners& corners) {
   }
   for (std::size_t c = 0; c < num_cells; ++c) {
     const int face = kCubeTable.entry[mask[c]][0].joined_face;
+    // Faces at coordinate 1 only: each pair of cells is met from its lower one.
     if (face == CubeLoops::kNoFace || (face & 1) == 0) continue;
     const int neighbour =
         corners.cell_above[static_cast<std::size_t>(corners.of_cell[c][std::size_t{1} << (face / 2)])];
     if (neighbour < 0) continue;
     const auto n = static_cast<std::size_t>(neighbour);
+    // Joined on both sides: the one case that is not manifold. Flipping it in both parts them.
     if (kCubeTable.entry[mask[n]][0].joined_face != (face ^ 1)) continue;
     flipped[c] = flipped[n] = 1;
   }
@@ -174,6 +180,7 @@ std::vector<Quad> connect(const Corners& corners, const Pieces& pieces, const st
       const auto low = static_cast<std::size_t>(i | j);
       const double below = corners.values(corners.of_cell[c][low]);
       const double above = corners.values(corners.of_cell[c][low | std::size_t{1} << axis]);
+      // Inside is above: counter-clockwise from the other side.
       if (below > above) std::swap(quad[1], quad[3]);
       quads.push_back(quad);
     }
@@ -194,6 +201,7 @@ bool cut_02(const Quad& q, const CellVertices& vertices) {
       triangle_normal(x, q[0], q[1], q[2]).dot(up) > 0 && triangle_normal(x, q[0], q[2], q[3]).dot(up) > 0;
   const bool upright_13 =
       triangle_normal(x, q[1], q[2], q[3]).dot(up) > 0 && triangle_normal(x, q[1], q[3], q[0]).dot(up) > 0;
+  // A triangle that is turned over would be seen as a dark fold.
   if (upright_02 != upright_13) return upright_02;
   return (x.col(q[0]) - x.col(q[2])).squaredNorm() <= (x.col(q[1]) - x.col(q[3])).squaredNorm();
 }

@@ -1,3 +1,6 @@
+// Vertices at which several fans of triangles meet are repeated, one for each fan, so that every vertex has a disc or
+// half a disc around it. Fans are found through shared edges; a vertex has few triangles, so that all pairs are
+// compared.
 #include "cells/mesh_topology.hpp"
 
 #include <algorithm>
@@ -28,6 +31,7 @@ int number_fans(std::vector<Wedge>& wedges) {
       open.pop_back();
       for (std::size_t other = 0; other < wedges.size(); ++other) {
         if (wedges[other].fan >= 0) continue;
+        // Neighbours in a fan share an edge from the vertex, run through in opposite directions.
         if (wedges[other].previous != wedges[current].next && wedges[other].next != wedges[current].previous) continue;
         wedges[other].fan = num_fans;
         open.push_back(other);

@@ -1,3 +1,7 @@
+// Vertices of meshes onto the surface: Newton's method x -= F grad F / |grad F|^2 in blocks, all vertices of a block at
+// a time; where it leaves the neighbourhood of its cell or does not converge, bisection of a crossed edge, which cannot
+// fail, but may end at a pole of F instead of a zero: |F| there tells. On a domain's edge F and the nearest inequality
+// are solved for together.
 #include "cells/mesh_vertices.hpp"
 
 #include <algorithm>
@@ -142,6 +146,7 @@ bool step_to_edge(const Eigen::Ref<const Vector>& gradient, double value, const 
   const double ge = gradient.dot(edge_gradient);
   const double ee = edge_gradient.squaredNorm();
   const double determinant = gg * ee - ge * ge;
+  // The edge runs along the surface there: no point of it is better than another.
   if (!(determinant > 1e-12 * gg * ee)) return false;
   const double a = (-value * ee + edge_value * ge) / determinant;
   const double b = (-edge_value * gg + value * ge) / determinant;
@@ -176,6 +181,7 @@ double inside_level(const Vector& corner_values) {
   if (size.empty()) return 0;
   const auto middle = size.begin() + static_cast<std::ptrdiff_t>(size.size() / 2);
   std::nth_element(size.begin(), middle, size.end());
+  // The median says what size F has, whatever its scale.
   return -1e-10 * *middle;
 }
 

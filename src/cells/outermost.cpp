@@ -1,3 +1,7 @@
+// The outermost crossed cell on one side of an axis, best first: of all candidates the outermost is halved, those of
+// its halves that may be crossed go back into the queue. The first candidate of the last level to come up is the
+// answer, for all others lie farther in. After kMostTests tests the outermost face not refuted yet is taken: the box is
+// a little wider.
 #include "cells/outermost.hpp"
 
 #include <algorithm>
@@ -33,6 +37,7 @@ std::optional<std::int32_t> outermost_face(CrossingTest& test, Index dim, const 
   std::vector<std::int32_t> known;  // d a candidate
   std::priority_queue<Candidate> queue;
   const auto add = [&](const std::int32_t* cell, int at_level) {
+    // The outer face, in cells of level 0.
     const std::int32_t outer = (cell[axis] + (side > 0 ? 1 : 0)) * (std::int32_t{1} << at_level);
     queue.push({-side * outer, at_level, known.size() / d});
     known.insert(known.end(), cell, cell + dim);
@@ -49,6 +54,7 @@ std::optional<std::int32_t> outermost_face(CrossingTest& test, Index dim, const 
     parents.clear();
     for (Index n = 0; n < most_parents && !queue.empty(); ++n) {
       const Candidate next = queue.top();
+      // Equals together make a batch; no worse one is halved.
       if (next.inwards != first.inwards || next.level != first.level) break;
       const auto cell = known.begin() + static_cast<std::ptrdiff_t>(next.number * d);
       parents.insert(parents.end(), cell, cell + dim);

@@ -1,3 +1,5 @@
+// Depth first in blocks: a block of cells is tested, its survivors are halved a few parents at a time, and each batch
+// of halves is finished before the next. Memory is a block a level; a test gets hundreds of cells; order is kept.
 #include "cells/refine.hpp"
 
 #include <algorithm>
@@ -43,6 +45,7 @@ void Refiner::refine(const std::vector<std::int32_t>& cells, int level, int last
 }
 
 void Refiner::refine(const std::int32_t* cells, Index n, int level, std::vector<std::int32_t>& out) {
+  // 2^d halves a parent.
   const Index parents_per_test = std::max<Index>(1, kBoxesPerTest >> std::min<Index>(dim_, 62));
   std::vector<std::uint8_t> crossed;
   std::vector<std::int32_t> kept;

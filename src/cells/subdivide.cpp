@@ -1,3 +1,8 @@
+// The paper's Algorithm I: cells that cover the box, far larger than wanted, are tested and halved on all axes again
+// and again, keeping those that the surface may cross. With interval bounds it starts from one cell; without, from
+// cells small enough for a Taylor polynomial. The first levels run one after the other; from kCoarseCells cells on,
+// blocks of them are refined in parallel and put together in order, so that the cells come out in Morton order on any
+// number of threads.
 #include "taut/cells/find_cells.hpp"
 
 #include <algorithm>
@@ -44,6 +49,7 @@ Cells cover(const CellGrid& lattice, const Box& box, int level) {
   Cells upper(static_cast<std::size_t>(d));
   lattice.cell_of(box.lower, lower);
   lattice.cell_of(box.upper, upper);
+  // Shifts round down, below zero as well.
   for (auto& c : lower) c = (c - 1) >> level;
   for (auto& c : upper) c = (c + 1) >> level;
   CellGrid cells(Vector::Zero(d), 1);
@@ -61,6 +67,7 @@ Cells cover(const CellGrid& lattice, const Box& box, int level) {
 }
 
 void check_estimate(Index num_coarse, int level, Index d, Index k, double size, std::size_t limit) {
+  // A surface of dimension d - k has 2^(d - k) times as many cells at half the size.
   const double num_cells = static_cast<double>(num_coarse) * std::ldexp(1.0, level * static_cast<int>(d - k));
   const double bytes = num_cells * static_cast<double>(4 * d + 12);
   if (bytes <= kEstimateSafety * static_cast<double>(limit)) return;
@@ -135,6 +142,7 @@ CellGrid subdivide(const Surface& surface, const SubdivideOptions& options, cons
         detail::check_memory(total, limit, static_cast<Index>(total) / (4 * d), size);
       });
       out.shrink_to_fit();
+      // What shrinking gave back.
       bytes -= counted - out.capacity() * sizeof(std::int32_t);
     }
     if (context.progress) {

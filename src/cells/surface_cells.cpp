@@ -1,3 +1,6 @@
+// Cells with a point of the surface each: the projection of the centre (d) and an orthonormal basis of the normal space
+// there (d x k). A cell whose centre does not come to rest near by is tried from 2 d places around it, and is not valid
+// if none of them does. Complete cells are projected once, in parallel; lazy ones grow by tiles as they are asked for.
 #include "taut/cells/surface_cells.hpp"
 
 #include <algorithm>
@@ -87,6 +90,7 @@ class CentreProjector {
     moved_ = starts;
     good_ = project_to_surface(*evaluator_, d_, surface_.codim(), moved_, options_, &normals_);
     if (edge_) pull_into_domain();
+    // A point pulled to the domain's edge may be farther from its centre than the surface is.
     const double reach = edge_ ? kReach : reach_;
     for (Index j = 0; j < starts.cols(); ++j) {
       if ((moved_.col(j) - starts.col(j)).lpNorm<Eigen::Infinity>() > reach * size_) good_(j) = false;
@@ -274,6 +278,7 @@ void SurfaceCells::resolve_tiles() {
   growth.context.check_cancelled();
   growth.found.clear();
   detail::Refiner refiner(growth.test, dim());
+  // With bounds a tile is refused as a whole; without, a Taylor polynomial is trusted on cells of the wanted size only.
   if (growth.test.has_bounds()) {
     refiner.refine(growth.pending, growth.level, 0, growth.found);
   } else {
