@@ -1,3 +1,5 @@
+// A user's polyline or loop, checked and made a strand: projected onto the surface, and cut until its segments are no
+// longer than half a cell and a 48th of the whole. A polyline that jumps so far that its class is in doubt is refused.
 #include "homotopy/class_setting.hpp"
 
 #include <fmt/format.h>

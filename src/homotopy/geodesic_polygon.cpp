@@ -1,3 +1,8 @@
+// Newton's method on the corners b_i of a polygon of short geodesics. First variation: dL / db_i = t_in - t_out. Its
+// derivatives are taken by central differences, a corner moved across the curve by kDifference of an arc to either
+// side; only the two arcs beside it change, so the Hessian is block tridiagonal (cyclic for a loop) and costs 4 r arcs
+// a corner, r = d - k - 1. Its eigenvalues tell: negative ones are directions down, those near zero neutral (loops on a
+// surface of revolution). Steps leave neutral directions alone. All unknowns together are few: the matrix is dense.
 #include "homotopy/geodesic_polygon.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -128,6 +133,7 @@ bool GeodesicPolygon::cut(const Strand& loop, Index num_arcs, const Context& con
   for (Index i = 0; i < n; ++i) {
     const double turn = maker_.turn(loop.normals.col(i), loop.normals.col(loop.after(i)));
     share[static_cast<std::size_t>(i) + 1] =
+        // Where the surface bends arcs are shorter, but none is longer than twice its share of the whole.
         share[static_cast<std::size_t>(i)] + loop.segment(i) / length + (turned > 0 ? turn / turned : 0);
   }
   std::vector<Index> corner(1, 0);
@@ -163,6 +169,7 @@ void GeodesicPolygon::make_frames() {
   for (Index i = 0; i < num_free(); ++i) {
     Eigen::MatrixXd fixed(dim, codim + 1);
     fixed.leftCols(codim) = Eigen::Map<const Eigen::MatrixXd>(normals.col(corner_of(i)).data(), dim, codim);
+    // Along the curve a corner may slide without changing the polygon: that direction is left out.
     fixed.col(codim) = (ends_of(arc_out_of(i)).leaving + ends_of(arc_into(i)).arriving).normalized();
     const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(fixed).householderQ();
     frames_[static_cast<std::size_t>(i)] = basis.rightCols(dim - codim - 1);
@@ -209,6 +216,7 @@ bool GeodesicPolygon::differentiate(const Context& context) {
         leaving += side * first.leaving;
         jump += side * (first.arriving - second.leaving);
         arriving += side * second.arriving;
+        // The projection onto the surface shortens a move a little: what counts is how far the corner went.
         moved += side * frame(i).col(c).dot(to.col(0) - here);
       }
       auto column = hessian_.col(i * r + c);
@@ -217,6 +225,7 @@ bool GeodesicPolygon::differentiate(const Context& context) {
       if (after >= 0) column.segment(after * r, r) += frame(after).transpose() * arriving / moved;
     }
   }
+  // Symmetric but for the error of the differences.
   hessian_ = (0.5 * (hessian_ + hessian_.transpose())).eval();
   if (!hessian_.allFinite()) return false;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian_);
@@ -258,6 +267,7 @@ bool GeodesicPolygon::move(const Vector& step, const Context& context) {
     most = std::max(most, step.segment(i * r, r).norm());
   }
   const double bound = std::min(kMostMove * shortest, gap_);
+  // No corner goes farther than the class allows.
   if (most > bound) to = corners_ + bound / most * (to - corners_);
   Points on = to;
   Points normals;
@@ -273,6 +283,7 @@ bool GeodesicPolygon::move(const Vector& step, const Context& context) {
   const double before = kink();
   std::swap(arcs, arcs_);
   std::swap(to, corners_);
+  // Kinks, not lengths, are to fall: Newton's method may go to a saddle.
   if (kink() < before) return true;
   std::swap(arcs, arcs_);
   std::swap(to, corners_);
@@ -289,6 +300,7 @@ GeodesicPolygon::Outcome GeodesicPolygon::solve(const Strand& loop, const Contex
   while (true) {
     if (num_arcs * across > kMostUnknowns) return Outcome::too_many_unknowns;
     if (cut(loop, num_arcs, context)) break;
+    // Some arc is no minimum, or has strayed: shorter ones are.
     num_arcs *= 2;
     if (num_arcs > std::min(kMostArcs, loop.num_points())) return Outcome::not_converged;
   }

@@ -1,3 +1,9 @@
+// Shortens a strand within its class. Energy E = 1/2 sum |p_{i+1} - p_i|^2 / w_i with w_i the segments' lengths at the
+// last weighing; the step is the gradient of E in the metric of the stiffness matrix (a Sobolev gradient), which moves
+// long waves as fast as short ones, so that the number of steps hardly depends on that of points. A step must gain
+// enough (Armijo) and keep its bounds: no point farther than a gap, no normal turned by more than half a radian, no
+// segment that could go round another way. So every strand is joined to the one before by short segments, and no handle
+// is jumped over.
 #include "homotopy/shortening.hpp"
 
 #include <algorithm>
@@ -108,6 +114,8 @@ Points Shortening::direction(double& slope) const {
   make_tangent(pull);
   const Index first = strand_.closed ? 0 : 1;
   const Index inner = strand_.closed ? n : n - 2;
+  // A loop can be moved as a whole at no cost: the mass, of the size of the longest wave's stiffness, makes that
+  // regular.
   const double mass = strand_.closed ? std::pow(2 * std::numbers::pi / length, 2) : 0;
   std::vector<double> diagonal(static_cast<std::size_t>(inner));
   std::vector<double> off(static_cast<std::size_t>(inner));
@@ -186,6 +194,7 @@ bool Shortening::returns() const {
   return strand_.closed || apart <= 1e-12 * scale_;
 }
 
+// A loop of half a segment whose normals agree lies on a flat piece of surface and bounds a disc there.
 bool Shortening::is_a_point() const {
   const double length = strand_.length();
   if (!returns() || length > gap_ / 2) return false;
@@ -207,6 +216,7 @@ Shortening::Outcome Shortening::run(double settle, const Context& context) {
     double slope = 0;
     const Points move = direction(slope);
     const double most = move.colwise().norm().maxCoeff();
+    // Small steps, or a gain that rounding would hide.
     if (!(most > settle) || !(slope > 1e-13 * energy(strand_.points))) return Outcome::settled;
     if (!step(move, most, slope)) return Outcome::stuck;
     ++num_steps_;
@@ -224,6 +234,7 @@ void Shortening::disturb(int round) {
   for (int wave = 1; wave <= 3; ++wave) {
     const Vector sine = random_direction(strand_.points.rows(), random);
     Vector cosine = Vector::Zero(sine.size());
+    // A loop has waves of both phases, and a shift; with fixed ends only sines vanish there.
     if (strand_.closed) cosine = random_direction(sine.size(), random);
     for (Index i = 0; i < n; ++i) {
       const double angle = std::numbers::pi * (strand_.closed ? 2 * (wave - 1) : wave) * static_cast<double>(i) /

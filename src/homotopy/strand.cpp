@@ -1,3 +1,6 @@
+// Dense polylines on a surface. A segment is plain if its middle projects close by and the normal turns moderately
+// along it: then there is one way over the surface between its ends. Cutting goes on until all are plain and short, or
+// one is not plain: which way is meant there, the polyline does not say.
 #include "homotopy/strand.hpp"
 
 #include <fmt/format.h>
@@ -59,7 +62,9 @@ double StrandMaker::turn(const VectorIn& a, const VectorIn& b) const {
   const auto k = static_cast<double>(codim_);
   const double squared = overlap.squaredNorm();
   const double sines = k - squared;  // squared, of all principal angles
+  // |N_a - N_b|^2 in short: are the bases themselves alike, and not only the spaces.
   const bool near = squared - 2 * overlap.trace() + k < 1;
+  // Small angles, by far the most: the root of the sum of squares bounds the largest, without a decomposition.
   if (near && sines < 0.02) return std::sqrt(std::max(0.0, sines));
   if (!near && !(overlap.determinant() > 0)) return std::numbers::pi;
   const Vector cosines = Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues();
@@ -70,6 +75,7 @@ bool StrandMaker::is_near(const PointsIn& line, const PointsIn& curve, double di
   const double stretch = polyline_length(curve) / std::max(polyline_length(line), 1e-300);
   std::vector<double> arcs(1, 0.0);
   for (Index i = 1; i < line.cols(); ++i) {
+    // At equal parts of both lengths, not at the nearest points: those would hide a loop more or less.
     arcs.push_back(arcs.back() + stretch * (line.col(i) - line.col(i - 1)).norm());
   }
   Points along = at_arc_lengths(curve, arcs);
@@ -92,6 +98,7 @@ Index StrandMaker::refine(Strand& strand, double gap, double most_turn, std::vec
     for (Index i = 0; i < m; ++i) {
       const double length = strand.segment(i);
       const double angle = turn(strand.normals.col(i), strand.normals.col(strand.after(i)));
+      // Cutting would not help: the halves turn one way or the other.
       if (angle > kPlainTurn) return i;
       if (length > gap || (angle > most_turn && length > kShortest * gap)) cut.push_back(i);
     }
