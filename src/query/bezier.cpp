@@ -43,6 +43,7 @@ class Casteljau {
     for (Index i = 0; i + 1 < controls.cols(); ++i) {
       const PathResult path = solver_.solve(controls.col(i), controls.col(i + 1));
       if (path.status != Status::ok) return fail(path.status, "between control points", i, path.message);
+      // A geodesic that bends at an edge cannot be carried on by Newton's method.
       if (path.pieces.size() > 1) {
         return fail(Status::not_converged, "between control points", i,
                     "the path crosses an edge, which is not smooth");
@@ -117,6 +118,7 @@ class Casteljau {
 
   /// Moves the ends of a geodesic to `from` and `to`.
   bool carry(Arc& arc, const Vector& from, const Vector& to) {
+    // Two points of the level below have met: a point is its own geodesic.
     if (from == to) {
       arc = {.points = from, .curve = {}};
       return true;
@@ -143,6 +145,7 @@ class Casteljau {
   [[nodiscard]] Vector at(const Arc& arc, double t) const {
     if (t <= 0 || arc.curve.num_elements() == 0) return arc.points.col(0);
     if (t >= 1) return arc.points.rightCols(1);
+    // Between its nodes the polynomial is off the surface by its error.
     return project_to_surface(solver_.surface(), arc.curve.point(t * arc.curve.period())).point;
   }
 
@@ -183,6 +186,7 @@ BezierCurve bezier_curve(PathSolver& solver, const PointsIn& controls, Index num
     for (Index step = 1; moved && step <= substeps; ++step) {
       const double t = (static_cast<double>(done - 1) + static_cast<double>(step) / static_cast<double>(substeps)) /
                        static_cast<double>(intervals);
+      // The last parameter is 1 exactly: arrived() is asked there.
       moved = construction.move_to(done == intervals && step == substeps ? 1 : t);
     }
     if (!moved) break;

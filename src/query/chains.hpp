@@ -13,6 +13,7 @@ class Chains {
   /// A segment from node a to node b.
   void join(Index a, Index b) {
     resize(a > b ? a : b);
+    // A node has one segment in and one out at most: level lines cross an edge of a mesh once.
     next_[at(a)] = b;
     previous_[at(b)] = a;
   }
@@ -34,6 +35,7 @@ class Chains {
     for (Index e = 0; e < n; ++e) {  // open ones from their beginnings
       if (previous_[at(e)] < 0 && next_[at(e)] >= 0) follow(e);
     }
+    // What is left are rings: they begin anywhere.
     for (Index e = 0; e < n; ++e) {
       if (seen[at(e)] == 0 && next_[at(e)] >= 0) follow(e);
     }

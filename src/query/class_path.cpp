@@ -1,3 +1,9 @@
+// The shortest path among those that can be deformed into a given polyline on the surface. The polyline becomes a dense
+// strand, which is shortened in steps too small to leave its class (homotopy/shortening). From time to time it is near
+// enough to rest for the correction to be tried: its outcome counts only if it stays so close to the strand that no
+// handle of the surface fits between them. Where Newton's method on the whole curve jumps, a polygon of short geodesic
+// arcs is solved for instead (homotopy/geodesic_polygon). Where nothing stays close, the strand itself is the answer,
+// its error unknown.
 #include "taut/query/path.hpp"
 
 #include <fmt/format.h>
@@ -94,10 +100,12 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
     result.num_iterations = shortening.num_steps();
     if (is_point) break;
     geodesic = correct(result.grid_path);
+    // Near the strand all along: no handle of the surface lies between them.
     followed = shortening.is_followed_by(geodesic.points);
     if (!followed) {
       // Too far for one jump: Newton's method on a polygon of arcs, in steps that keep the class.
       const bool smooth = polygon.solve(shortening.strand(), context) == detail::GeodesicPolygon::Outcome::smooth;
+      // A polygon that is no minimum would be left by shortening, too.
       if (smooth && polygon.index() == 0) {
         result.grid_path = polygon.points();
         geodesic = correct(result.grid_path);
@@ -110,6 +118,7 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
         }
       }
     }
+    // Ends that are one point: the loop may yet shrink to it, and then the short geodesic is no answer.
     const bool comes_undone = shortening.returns() && geodesic.length < setting.gap;
     if (followed && !comes_undone) break;
     // Slid off a saddle perhaps: then so shall the strand.
@@ -126,6 +135,7 @@ PathResult path_in_class(const Surface& surface, const PointsIn& polyline, const
   } else if (!followed) {
     geodesic = uncorrected(shortening);
   }
+  // The flow's summary belongs to a curve that is not the answer.
   if (is_point || !followed) result.flow.reset();
   geodesic.num_iterations += result.num_iterations;
   static_cast<Geodesic&>(result) = std::move(geodesic);

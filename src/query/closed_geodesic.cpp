@@ -1,3 +1,7 @@
+// A closed geodesic in the class of a loop: the loop is shortened as a strand without ends (homotopy/shortening), and
+// from time to time a polygon of geodesic arcs with free corners is solved for from it (homotopy/geodesic_polygon),
+// whose second derivatives tell minima from saddles. A loop that can shrink does, to a point. What is no minimum is
+// taken only if it lies where the loop is: a class may hold several, and the one the loop comes to is meant.
 #include "taut/query/closed_geodesic.hpp"
 
 #include <fmt/format.h>
@@ -101,6 +105,7 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
       problem = "the loop bends too often, in too many dimensions, for its joints to be solved for";
       return;
     }
+    // Why: the first arc that failed says it best.
     const NewtonResult* bad = polygon.bad_arc();
     if (bad != nullptr) status = bad->status;
     problem = bad != nullptr ? std::string(bad->reason) : "the arcs of the loop do not come to rest";
@@ -119,6 +124,7 @@ ClosedGeodesic closed_geodesic(const Surface& surface, const PointsIn& polyline,
   }
   ClosedGeodesic result = found ? *std::move(found) : unfinished(shortening, status, problem);
   if (result.status != Status::ok) result.obstacle = {Obstacle::Kind::no_geodesic};
+  // Shorter than a segment, yet no point: round a spike or through a singular point.
   if (!found && shortening.strand().length() < setting.gap) {
     result.obstacle = {Obstacle::Kind::contracts};
     result.message = detail::explain(result);

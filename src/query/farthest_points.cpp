@@ -1,3 +1,5 @@
+// Gonzalez' rule: each new point is the one farthest from those chosen so far, so that n points cover the surface
+// within twice the least radius that any n could.
 // Farthest-point sampling by marched distances: each march goes only as far as the new point may be the nearest.
 
 #include "taut/query/point_sets.hpp"
@@ -38,6 +40,7 @@ FarthestPoints farthest_points(const Surface& surface, SurfaceCells& cells, cons
         chosen.nearest[static_cast<std::size_t>(i)] = k;
       }
       if (!std::isfinite(chosen.distance(i))) continue;
+      // Of equal ones the first: the same points in every run.
       if (farthest < 0 || chosen.distance(i) > chosen.distance(farthest)) farthest = i;
     }
     chosen.cover.push_back(farthest < 0 ? 0 : chosen.distance(farthest));
@@ -99,12 +102,14 @@ FarthestPoints farthest_points(const Surface& surface, const VectorIn& first, In
     start = levels.on_surface(first, "first point");
   } else {
     const std::shared_ptr<SurfaceCells> any = levels.cells(0, seeds);
+    // Any point of the surface will do to begin with: the first cell's.
     for (Index i = 0; i < any->num_cells() && start.size() == 0; ++i) {
       if (any->valid(i)) start = any->point(i);
     }
     if (start.size() == 0) throw EmptySurface("no surface was found to spread points over");
   }
   if (detail::is_kinked(surface)) return over_edges(surface, start, count, options, context);
+  // Points are cells: too few cells would make them crowd.
   constexpr Index kCellsPerPoint = 24;
   std::shared_ptr<SurfaceCells> cells = levels.cells(0, start);
   for (int level = 1; level < levels.num_levels() && options.cell == 0; ++level) {

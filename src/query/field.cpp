@@ -1,3 +1,6 @@
+// Marched distances from several sources, over cells or, on surfaces with edges, over the triangles of the display
+// mesh. For surfaces in space they are read at the mesh's vertices too, so that they can be shown. Errors:
+// docs/march.md; exact distances are DistanceSolver's.
 #include "taut/query/field.hpp"
 
 #include <cmath>
@@ -64,11 +67,13 @@ FieldResult marched_field(const Surface& surface, const PointsIn& sources, const
   Points on_surface(sources.rows(), sources.cols());
   for (Index j = 0; j < sources.cols(); ++j) on_surface.col(j) = levels.on_surface(sources.col(j), "source");
 
+  // A shorter way may run outside the box: said once.
   if (levels.endless()) {
     context.tell("the surface goes on beyond " + detail::text_of(levels.box()) +
                  ": distances are along paths that stay in there");
   }
 
+  // The paper's marches step across edges as over any cells; they are kept for comparison.
   if (options.march == MarchMethod::convergent && options.envelope == 0 && detail::is_kinked(surface)) {
     return march_over_edges(surface, on_surface, options, context);
   }

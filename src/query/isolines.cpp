@@ -1,3 +1,5 @@
+// Lines of equal distance: traced on a mesh by linear interpolation along its edges, then every node moved along the
+// gradient of the exact distance until it has its level. Lines keep the higher values on one side.
 #include "taut/query/distance.hpp"
 
 #include <algorithm>
@@ -20,6 +22,7 @@ void add_level(const TriangleMesh& mesh, const Vector& values, double level, Pol
   std::vector<std::array<Eigen::Index, 2>> edges;
   const auto crossing = [&](Index a, Index b) {
     const auto [low, high] = std::minmax(a, b);
+    // One number an edge, whichever face asks.
     const std::uint64_t key = static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
     const auto [place, fresh] = number.try_emplace(key, static_cast<Index>(edges.size()));
     if (fresh) edges.push_back({low, high});
@@ -35,6 +38,7 @@ void add_level(const TriangleMesh& mesh, const Vector& values, double level, Pol
       const Index a = mesh.faces(c, f);
       const Index b = mesh.faces((c + 1) % 3, f);
       finite = finite && std::isfinite(values(a));
+      // A vertex at the level counts as above it: a face is cut across two edges or none.
       if (values(a) >= level && values(b) < level) falls = crossing(a, b);
       if (values(a) < level && values(b) >= level) rises = crossing(a, b);
     }
@@ -44,6 +48,7 @@ void add_level(const TriangleMesh& mesh, const Vector& values, double level, Pol
     Points points(3, static_cast<Index>(line.size()));
     for (Index i = 0; i < points.cols(); ++i) {
       const auto [a, b] = edges[static_cast<std::size_t>(line[static_cast<std::size_t>(i)])];
+      // Never 0 / 0: the ends lie on different sides of the level.
       const double share = (level - values(a)) / (values(b) - values(a));
       points.col(i) = mesh.vertices.col(a) + share * (mesh.vertices.col(b) - mesh.vertices.col(a));
     }
@@ -84,6 +89,7 @@ Polylines distance_isolines(DistanceSolver& solver, const TriangleMesh& mesh, co
     const Distances u = solver.at(moved);
     for (Index j = 0; j < n; ++j) {
       const double missing = level(j) - u.distance(j);
+      // As far as the distance there is known.
       const double enough = std::max(u.error(j), 1e-12 * level(j));
       there[static_cast<std::size_t>(j)] = std::abs(missing) <= enough ? 1 : 0;
       if (step < kMostSteps && std::isfinite(missing) && u.arrival.col(j).allFinite()) {
@@ -94,6 +100,7 @@ Polylines distance_isolines(DistanceSolver& solver, const TriangleMesh& mesh, co
   }
   Index count = 0;
   for (Index j = 0; j < n; ++j) {
+    // A node that did not arrive (no exact distance, a cut locus) keeps its place on the mesh.
     if (there[static_cast<std::size_t>(j)] == 0) continue;
     x.col(j) = moved.col(j);
     ++count;

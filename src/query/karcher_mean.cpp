@@ -89,12 +89,14 @@ class Descent {
       Look next = look(ray.point);
       if (!next.complete) return next;
       // The variance falls by 2 <down, mean log> to first order, by half of it with Newton's step.
+      // A quarter of the first-order gain, half of Newton's: Armijo's condition.
       const double expected = 0.5 * step * down.dot(here.mean_log);
       if (next.variance > here.variance - expected && step * down.norm() > enough(spread)) {
         // Rounding hides what the last steps gain: then the gradient tells.
         const bool hidden = std::abs(next.variance - here.variance) < 1e-12 * here.variance;
         if (!hidden || next.mean_log.norm() > slope) {
           step /= 2;
+          // No step leads down any more: at rest if the gradient is small enough for it.
           if (step < 1e-6) {
             here.converged = slope <= 1e3 * enough(spread);
             return here;
@@ -103,6 +105,7 @@ class Descent {
         }
       }
       here = std::move(next);
+      // Back to full steps, which Newton's method needs to converge fast.
       step = std::min(1.0, 2 * step);
     }
     return here;
@@ -174,6 +177,7 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
   w /= w.sum();
   Descent descent(surface, points, w, options, context);
   KarcherMean result;
+  // The variance may have several minima: the descent begins at points far from each other.
   constexpr int kStarts = 3;
   std::vector<Look> found;
   Index first = 0;
@@ -181,6 +185,7 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
   Vector nearest = Vector::Constant(n, std::numeric_limits<double>::infinity());  // to starts and minima so far
   for (int start = 0; start < std::min<Index>(kStarts, n); ++start) {
     Index at = first;
+    // The point farthest from all starts and minima so far.
     if (start > 0) nearest.maxCoeff(&at);
     if (start > 0 && !(nearest(at) > 0)) break;
     const Look begin = descent.look(points.col(at));

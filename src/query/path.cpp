@@ -1,3 +1,8 @@
+// Shortest paths asked for singly, in pairs and from one point to many. A solver keeps what can be used again: box,
+// cells, tables. Each block of pairs has a corrector of its own; the search is shared, its const members being safe to
+// call. A pair that fails says so in its own result: only Cancelled ends a batch.
+//
+// From one point, the distance field is marched once over all cells, and every target continues from there.
 #include "taut/query/path.hpp"
 
 #include <fmt/format.h>
@@ -105,11 +110,13 @@ std::vector<PathResult> PathSolver::Impl::for_all(Index n, bool parallel,
                                                   const std::function<PathResult(Index, Corrector&)>& body) {
   constexpr Index kBlock = 8;
   std::vector<PathResult> results(static_cast<std::size_t>(n));
+  // Parallel over pairs; within a pair on one thread only.
   Context threads = user;
   if (!parallel) threads.threads = 1;
   Context serial = context;  // of a single pair among many
   serial.threads = 1;
   std::atomic<Index> done = 0;
+  // Progress of single marches would mean nothing in a batch.
   *batch = true;
   try {
     detail::parallel_for(threads, 0, n, kBlock, [&](Index first, Index last) {
@@ -150,6 +157,7 @@ PathResult PathSolver::solve(const VectorIn& p, const VectorIn& q) {
   PathResult result =
       with_doubt(impl.search.find(impl.levels().on_surface(p, "start"), impl.levels().on_surface(q, "end"), corrector),
                  impl.doubt);
+  // Finding the box was part of the cells' work.
   result.seconds.cells += box_seconds;
   return result;
 }
@@ -188,6 +196,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
     detail::check_point(impl.surface, targets.col(j), "end");
     return impl.levels().on_surface(targets.col(j), "end");
   };
+  // No field to share: no cells, cells that grow for each pair, or paths over edges.
   if (!impl.levels().exist() || impl.levels().lazy() || impl.search.has_kinks()) {
     return impl.for_all(targets.cols(), true, [&](Index j, Impl::Corrector& corrector) {
       return impl.search.find(from, target(j), corrector);
@@ -220,6 +229,7 @@ std::vector<PathResult> PathSolver::solve_from(const VectorIn& p, const PointsIn
   });
   if (on_shared_cells != results.end()) on_shared_cells->walked_cells = std::move(walked);
   if (!results.empty()) {
+    // The shared work counts once.
     results.front().seconds.cells += shared.cells;
     results.front().seconds.march += shared.march;
   }

@@ -1,3 +1,6 @@
+// Geodesics told by start, direction and length: one, or many in parallel. The start is brought onto the surface, the
+// direction onto its tangent plane, and the exponential map follows (curve/exponential_map); on surfaces with edges the
+// ray goes on over them (strata/facet_ray), where it is bent as the unfolded faces ask. Negative lengths go backwards.
 #include "taut/query/tangent_maps.hpp"
 
 #include <fmt/format.h>
@@ -105,6 +108,7 @@ Vector RaySolver::Impl::start(const VectorIn& from) {
       surface.inside_domain(projected.point, kRounded * scale)(0)) {
     return projected.point;
   }
+  // Only now is a size needed to judge the distance by, which may cost a search for the box.
   levels.prepare(from);
   return levels.on_surface(from, "start");
 }
@@ -128,6 +132,7 @@ void RaySolver::Impl::trace(RayResult& result, const VectorIn& direction, double
     result.message = explain(result, length);
     return;
   }
+  // Over faces rays only go forwards: backwards is forwards the other way, with the signs put back afterwards.
   const detail::Point3 way = length < 0 ? detail::Point3(-direction) : detail::Point3(direction);
   const detail::FacetRay found = detail::trace_over_faces(*over, result.from, way, std::abs(length), options, told);
   static_cast<ExponentialResult&>(result) = found.ray;
@@ -176,6 +181,7 @@ RayResult RaySolver::solve(const VectorIn& from, const VectorIn& direction, doub
   check_direction(impl.surface, direction, length);
   RayResult result;
   result.from = impl.start(from);
+  // At an edge there are two tangent planes: nothing to compare with.
   if (impl.facets(result.from) == nullptr) impl.tell_tilt(result.from, direction);
   const detail::FacetedSurface* faces = impl.facets(result.from);
   const std::unique_ptr<detail::FacetedSurface> own = faces != nullptr ? faces->clone() : nullptr;
@@ -208,10 +214,12 @@ std::vector<RayResult> RaySolver::solve_many(const PointsIn& from, const PointsI
   detail::parallel_for(impl.context, 0, from.cols(), kGrain, [&](Index first, Index last) {
     ExponentialMap map(impl.surface, impl.options);
     const std::unique_ptr<detail::FacetedSurface> own = faces != nullptr ? faces->clone() : nullptr;
+    // Nobody could tell whose progress and notes those were.
     Context quiet;
     quiet.cancel = impl.context.cancel;
     for (Index j = first; j < last; ++j) {
       RayResult& result = results[static_cast<std::size_t>(j)];
+      // Refused already when its start was judged.
       if (!result.message.empty()) continue;
       guard(result, [&] { impl.trace(result, directions.col(j), lengths(j), own.get(), map, quiet); });
     }

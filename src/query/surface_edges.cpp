@@ -1,3 +1,6 @@
+// The edges, corners and faces of a surface that is not smooth, told for people and files: lines of points (3 x n) with
+// their angles, the formulas' names of the faces, and how many patches each face has. Found by strata/edge_network.
+// Empty for other than surfaces in space, and for formulas without kinks.
 #include "taut/query/surface_summary.hpp"
 
 #include <cstddef>
@@ -13,6 +16,8 @@ namespace {
 SurfaceEdge told(detail::FacetedSurface& surface, const detail::EdgeLine& line) {
   SurfaceEdge edge;
   const detail::SharpEdge of = surface.edge(line.edge);
+  // Nothing on the other side: the domain cuts the surface there. A seam is an edge in name only: its faces join
+  // smoothly.
   edge.kind = of.b < 0                           ? SurfaceEdge::Kind::border
               : line.angle <= detail::kSeamAngle ? SurfaceEdge::Kind::seam
                                                  : SurfaceEdge::Kind::sharp;

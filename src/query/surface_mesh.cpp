@@ -1,3 +1,6 @@
+// Meshes for pictures: cells fine enough to look smooth, their zero set by cells/mesh_surface, and edges of surfaces
+// that are not smooth brought in afterwards. Sizes: as asked for; else half of what a search would take, or for fits
+// what a budget of cells allows.
 #include "taut/query/surface_mesh.hpp"
 
 #include <algorithm>
@@ -65,6 +68,7 @@ CellGrid display_grid(const Surface& surface, const DisplayMeshOptions& options,
   };
   if (options.cell > 0) return cells_of(options.cell);
   const std::shared_ptr<SurfaceCells> coarse = levels.cells(0, near);  // as fine as the surface bends
+  // Half the size has four times the cells.
   const int level = 4 * coarse->num_cells() > kMostCells ? 0 : 1;
   if (level == 0 && levels.size(0) <= finest) return coarse->grid();
   return cells_of(std::min(levels.size(level), finest));

@@ -1,3 +1,6 @@
+// What `taut info` tells: box, cells, components, and for surfaces in space area, Euler number and edges, by a mesh
+// over the same cells. For fits, how far the samples lie off. In more than six dimensions cells are grown from samples,
+// up to kMostGrownCells. Where nothing is found, the rank of the equations is looked at, for that is the usual reason.
 #include "taut/query/surface_summary.hpp"
 
 #include <algorithm>
@@ -64,9 +67,11 @@ SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, std::optiona
     shape.area += (b - a).cross(c - a).norm() / 2;
   }
   const Index boundary = count_boundary_edges(mesh.faces);
+  // Each inner edge belongs to two triangles, each of the boundary to one.
   const Index edges = (3 * mesh.faces.cols() + boundary) / 2;
   shape.euler = mesh.vertices.cols() - edges + mesh.faces.cols();
   shape.closed = boundary == 0 && mesh.faces.cols() > 0;
+  // Without a domain or a box of the user's a boundary can only come from the box that was looked through.
   shape.cut_by_box = boundary > 0 && surface.domain() == nullptr && !surface.box();
   return shape;
 }

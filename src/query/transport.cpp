@@ -64,6 +64,7 @@ TransportResult transport_along(PathSolver& solver, const PointsIn& stations, co
       result.message = part + path.message;
       break;
     }
+    // Over an edge there is no one tangent plane; what carrying means there is a matter of convention.
     if (path.pieces.size() > 1) {
       result.status = Status::not_converged;
       result.message = part + "the path goes over edges, and vectors are carried on smooth faces only";
@@ -113,6 +114,7 @@ Points transport_to_targets(const Surface& surface, const VectorIn& source, cons
       for (Index c = 0; c < m; ++c) carried.col(j * m + c) = vectors.col(c) - n1 * n1.dot(vectors.col(c));
       continue;
     }
+    // (v, n x v) is carried to (w, n x w): parallel along the geodesic, for both keep their angle with its tangent.
     const Eigen::Vector3d across = n1.cross(v);
     const Eigen::Vector3d end_across = Eigen::Vector3d(n2.col(j)).cross(w);
     for (Index c = 0; c < m; ++c) {

@@ -1,3 +1,6 @@
+// A path through given points: the shortest path of each leg, one after the other. Lengths and errors add up; the whole
+// is as certain as its least certain leg, and its status that of the leg that can be used least. It may bend at the
+// points: they are met, not smoothed.
 #include "taut/query/path.hpp"
 
 #include <fmt/format.h>
@@ -91,6 +94,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.length += leg.length;
     whole.length_error += leg.length_error;
     whole.locally_shortest = whole.locally_shortest && leg.locally_shortest;
+    // Fields that vanish at the points are fields of the legs: their negative directions add up.
     whole.index = whole.index && leg.index ? std::optional(*whole.index + *leg.index) : std::nullopt;
     whole.unique = whole.unique && leg.unique;
     whole.tied = whole.tied || leg.tied;
@@ -108,6 +112,7 @@ ViaResult path_through(PathSolver& solver, const PointsIn& points) {
     whole.seconds.march += leg.seconds.march;
     whole.seconds.correct += leg.seconds.correct;
   }
+  // Without all legs there is no curve, and a sum of some lengths would mislead.
   if (complete) {
     whole.points = joined(whole.legs, &PathResult::points);
     whole.grid_path = joined(whole.legs, &PathResult::grid_path);

@@ -74,6 +74,7 @@ void bisect(DistanceSolver& solver, const TriangleMesh& mesh, const std::vector<
     const Distances u = solver.at(x);
     for (Index e = 0; e < n; ++e) {
       const CutEdge& edge = cuts.edges[at(e)];
+      // Once a label on the edge is not proved, its place stays where the halving had come to.
       if (!edge.exact || known[at(e)] == 0) continue;
       if (u.proof[at(e)] != DistanceProof::fan) {
         known[at(e)] = 0;
@@ -104,6 +105,7 @@ class Borders {
         corner[c] = mesh.faces(static_cast<Index>(c), f);
         own[c] = label[at(corner[c])];
       }
+      // A vertex that no source reaches: no border is told there.
       if (own[0] < 0 || own[1] < 0 || own[2] < 0) continue;
       const bool three = own[0] != own[1] && own[1] != own[2] && own[2] != own[0];
       if (three) {
@@ -121,6 +123,7 @@ class Borders {
         const Index edge = cuts.find(corner[c], corner[(c + 1) % 3]);
         const auto pair = std::minmax(a, b);
         if (three) {
+          // The lower number always lies on the same side, so that segments of neighbouring faces join head to tail.
           if (a < b) {
             join(pair, edge, next);
           } else {
@@ -227,6 +230,7 @@ VoronoiResult geodesic_voronoi(const Surface& surface, const PointsIn& sources, 
     const Vector marched = distance_at(surface, cells, field, result.mesh.vertices);
     for (Index v = 0; v < n; ++v) {
       if (exact[at(v)] != 0 || !std::isfinite(marched(v)) || marched(v) > options.max_distance) continue;
+      // The nearest source of the cell that holds the vertex: right but for a cell along the borders.
       const Index cell = cells.grid().find_point(result.mesh.vertices.col(v));
       if (cell == CellGrid::kNone || field.nearest_source[at(cell)] < 0) continue;
       distance(v) = marched(v);
