@@ -101,6 +101,8 @@ void FlowCorrection::project_nodes(Points& points) {
   points = kept.leftCols(count);
 }
 
+// An interval is too bent by the turn of the normal, or, where the normal comes back to itself, by how far its middle
+// is off the surface.
 std::vector<bool> FlowCorrection::bent_intervals(const FlowNodes& nodes, double turn) {
   const Vector lengths = interval_lengths(nodes.points());
   const Vector turns = normal_turns(nodes);

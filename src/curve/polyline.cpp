@@ -46,6 +46,7 @@ Points at_arc_lengths(const PointsIn& nodes, const std::vector<double>& arcs) {
   return result;
 }
 
+// Parts of the polyline's own length: its corners are in general not among the points.
 Points at_equal_parts(const PointsIn& nodes, Index count) {
   const double length = polyline_length(nodes);
   std::vector<double> arcs;

@@ -95,6 +95,7 @@ FarthestPoints farthest_points(const Surface& surface, const VectorIn& first, In
   if (!levels.exist() || levels.lazy()) {
     throw InvalidArgument("farthest points are chosen on cells, which are made in up to 6 dimensions");
   }
+  // Without a first point the box is found from the seeds, or from the surface alone.
   const Points seeds = options.seeds.cols() > 0 ? options.seeds : Points(surface.dim(), 0);
   levels.prepare(first.size() > 0 ? Points(first) : seeds);
   Vector start;

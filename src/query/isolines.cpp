@@ -113,6 +113,7 @@ Polylines distance_isolines(DistanceSolver& solver, const TriangleMesh& mesh, co
   return lines;
 }
 
+// Between 0 and the largest finite value, both left out: there the lines would be points.
 std::vector<double> even_levels(const Vector& values, int count) {
   double most = 0;
   for (const double u : values) {
