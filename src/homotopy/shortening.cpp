@@ -249,7 +249,10 @@ void Shortening::disturb(int round) {
     const auto found = maker_.project(moved.points, moved.normals, gap_);
     if (!found.all() || !is_bounded(moved)) continue;
     if (!strand_.closed) {
-      for (const Index end : {Index{0}, n - 1}) moved.points.col(end) = strand_.points.col(end);
+      for (const Index end : {Index{0}, n - 1}) {
+        moved.points.col(end) = strand_.points.col(end);
+        moved.normals.col(end) = strand_.normals.col(end);
+      }
     }
     strand_ = std::move(moved);
     set_weights();

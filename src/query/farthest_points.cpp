@@ -72,6 +72,9 @@ FarthestPoints over_edges(const Surface& surface, const Vector& start, Index cou
       const double distance = march.distance()(v);
       if (std::isfinite(distance) && (farthest < 0 || distance > march.distance()(farthest))) farthest = v;
     }
+    if (farthest < 0) {
+      throw InvalidArgument("farthest points: the first point reaches no vertex of the mesh; ask for smaller cells");
+    }
     chosen.cover.push_back(march.distance()(farthest));
     context.report("sample", static_cast<double>(k + 1) / static_cast<double>(count));
     if (chosen.cover.back() == 0) {
