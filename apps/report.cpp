@@ -339,6 +339,8 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
     json["euler"] = summary.shape->euler;
     json["closed"] = summary.shape->closed;
     json["cut_by_box"] = summary.shape->cut_by_box;
+    json["shape_cell"] = summary.shape->cell;
+    json["shape_settled"] = summary.shape->settled;
   }
   if (summary.edges) add_edges(*summary.edges, json);
   json["samples"] = summary.num_samples;
@@ -351,10 +353,11 @@ nlohmann::ordered_json summary_json(const SurfaceSummary& summary) {
 namespace {
 
 std::string shape_text(const SurfaceShape& shape) {
-  return fmt::format("area {:.4g}, Euler number {}, {}", shape.area, shape.euler,
+  return fmt::format("area {:.4g}, Euler number {}, {}{}", shape.area, shape.euler,
                      shape.closed       ? "closed"
                      : shape.cut_by_box ? "open where the box cuts it: the surface goes on beyond"
-                                        : "open");
+                                        : "open",
+                     shape.settled ? "" : fmt::format(" (on cells of {:.4g}; finer ones may tell more)", shape.cell));
 }
 
 }  // namespace

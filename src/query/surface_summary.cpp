@@ -22,6 +22,9 @@
 namespace taut {
 namespace {
 
+/// Of cells on which the Euler number is counted: 25 us each on a local fit, so some four seconds.
+constexpr Index kMostCountedCells = 150'000;
+
 /// |F| / |grad F| at each sample; for k > 1 the length of J^+ F to first order, with J's rows taken as orthogonal.
 Vector first_order_distances(const Surface& surface, const PointsIn& x) {
   const Points value = surface.value(x);
@@ -73,6 +76,24 @@ SurfaceShape shape_of(const Surface& surface, const CellGrid& grid, std::optiona
   shape.closed = boundary == 0 && mesh.faces.cols() > 0;
   // Without a domain or a box of the user's a boundary can only come from the box that was looked through.
   shape.cut_by_box = boundary > 0 && surface.domain() == nullptr && !surface.box();
+  shape.cell = grid.size();
+  return shape;
+}
+
+/// Counted again on cells of half the size until two sizes tell the same: legs of a scan nearer to each other than a
+/// cell grow together on it, and a thin ear is torn.
+SurfaceShape settled_shape(const Surface& surface, const detail::CellLevels& levels, const CellGrid& coarsest,
+                           std::optional<detail::FacetComplex>& complex, const Context& context) {
+  SurfaceShape shape = shape_of(surface, coarsest, complex, context);
+  Index num_cells = coarsest.num_cells();
+  // Half the size has four times the cells.
+  while (!shape.settled && 4 * num_cells <= kMostCountedCells) {
+    const CellGrid finer = levels.grid_of(shape.cell / 2);
+    SurfaceShape next = shape_of(surface, finer, complex, context);
+    next.settled = next.euler == shape.euler && next.closed == shape.closed;
+    num_cells = finer.num_cells();
+    shape = next;
+  }
   return shape;
 }
 
@@ -153,7 +174,8 @@ SurfaceSummary summarise(const Surface& surface, const SummaryOptions& options, 
       if (surface.dim() == 3 && surface.codim() == 1) {
         std::optional<detail::FacetComplex> complex = detail::FacetComplex::of(surface, levels.box(), context);
         if (complex) summary.edges = detail::edges_of(*complex);
-        summary.shape = shape_of(surface, cells->grid(), complex, context);
+        summary.shape = options.cell > 0 ? shape_of(surface, cells->grid(), complex, context)
+                                         : settled_shape(surface, levels, cells->grid(), complex, context);
       }
       summary.components = component_sizes(components(cells->grid()));
     } catch (const EmptySurface&) {

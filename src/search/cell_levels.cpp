@@ -161,24 +161,24 @@ bool CellLevels::grows() const {
   return request_.method == GridMethod::grow || (request_.method == GridMethod::automatic && fitted());
 }
 
-std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h, CellCounts* counts) const {
-  if (grows()) return nullptr;
-  return std::make_shared<SurfaceCells>(
-      surface_, subdivide(surface_, {.size = h, .box = box(), .origin = {}, .counts = counts}, context_), context_);
-}
-
-std::shared_ptr<SurfaceCells> CellLevels::grown(double h, CellCounts* counts) const {
+CellGrid CellLevels::grid_of(double h, CellCounts* counts) const {
+  if (!grows()) return subdivide(surface_, {.size = h, .box = box(), .origin = {}, .counts = counts}, context_);
   const GrowOptions options{.size = h, .origin = {}, .counts = counts};
-  if (fitted()) {
-    return std::make_shared<SurfaceCells>(surface_, grow(surface_, surface_.samples()->points, options, context_),
-                                          context_);
-  }
+  if (fitted()) return grow(surface_, surface_.samples()->points, options, context_);
   if (seeds_.cols() == 0) {
     throw InvalidArgument(
         "Algorithm II grows cells from points of the surface: give it some (option samples), or "
         "subdivide (option grid)");
   }
-  return std::make_shared<SurfaceCells>(surface_, grow(surface_.with_box(box()), seeds_, options, context_), context_);
+  return grow(surface_.with_box(box()), seeds_, options, context_);
+}
+
+std::shared_ptr<SurfaceCells> CellLevels::complete(double h, CellCounts* counts) const {
+  return std::make_shared<SurfaceCells>(surface_, grid_of(h, counts), context_);
+}
+
+std::shared_ptr<SurfaceCells> CellLevels::subdivided(double h) const {
+  return grows() ? nullptr : complete(h, nullptr);
 }
 
 /// Finds out whether the surface bends too much from one of the coarsest cells to the next for marched distances to
@@ -196,7 +196,7 @@ void CellLevels::refine_to_curvature() {
     // Half the size has four times the cells.
     if (enough || !refines || 4 * coarsest.cells->num_cells() > kMostRefinedCells) return;
     size_ /= 2;
-    coarsest.cells = subdivided(size_, &coarsest.counts);
+    coarsest.cells = complete(size_, &coarsest.counts);
   }
 }
 
@@ -208,7 +208,7 @@ std::shared_ptr<SurfaceCells> CellLevels::cells(int level, const PointsIn& seeds
   complete_.resize(std::max(complete_.size(), static_cast<std::size_t>(level) + 1));
   Complete& slot = complete_[static_cast<std::size_t>(level)];
   if (slot.cells) return slot.cells;
-  slot.cells = grows() ? grown(size(level), &slot.counts) : subdivided(size(level), &slot.counts);
+  slot.cells = complete(size(level), &slot.counts);
   if (level == 0) refine_to_curvature();
   return slot.cells;
 }

@@ -76,7 +76,9 @@ class CellLevels {
   /// looked at: lazy cells, cells for samples, and other than surfaces in R^3.
   [[nodiscard]] std::shared_ptr<const SharpBends> sharp_bends(int level);
   /// Complete cells of any size where `cells` gives complete ones by subdivision; null elsewhere.
-  [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const { return subdivided(h, nullptr); }
+  [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h) const;
+  /// The grid alone of complete cells of any size, by the algorithm that was asked for. Once prepared.
+  [[nodiscard]] CellGrid grid_of(double h, CellCounts* counts = nullptr) const;
 
   /// False when the cells of level 0 are coarser than the surface bends, since they were asked for or finer ones would
   /// be too many: marched distances may miss ways then. Known once there are such cells.
@@ -93,8 +95,7 @@ class CellLevels {
   [[nodiscard]] double chosen_size() const;
   [[nodiscard]] bool grows() const;
   [[nodiscard]] bool plant(const PointsIn& near);
-  [[nodiscard]] std::shared_ptr<SurfaceCells> subdivided(double h, CellCounts* counts) const;
-  [[nodiscard]] std::shared_ptr<SurfaceCells> grown(double h, CellCounts* counts) const;
+  [[nodiscard]] std::shared_ptr<SurfaceCells> complete(double h, CellCounts* counts) const;
   void refine_to_curvature();
 
   Surface surface_;

@@ -37,6 +37,19 @@ TEST(SurfaceSummary, TellsAreaHandlesAndEnds) {
   EXPECT_FALSE(summarise(parse_surface("x^2+y^2=1")).shape);
 }
 
+// A bar with a slit of 0.04 along it: a ring, on fine cells only.
+TEST(SurfaceSummary, CountsHandlesOnCellsThatAreFineEnough) {
+  const Surface ring = parse_surface("(x/4)^8+(y/0.5)^8+(z/0.2)^8+1.3*exp(-((x/3.2)^8+(y/0.04)^2))=1");
+  const SurfaceSummary summary = summarise(ring);
+  ASSERT_TRUE(summary.shape);
+  EXPECT_EQ(summary.shape->euler, 0);
+  EXPECT_TRUE(summary.shape->settled);
+  EXPECT_LT(summary.shape->cell, summary.cell);
+  const SurfaceSummary asked = summarise(ring, {.cell = 0.3});
+  EXPECT_EQ(asked.shape->cell, 0.3);
+  EXPECT_FALSE(asked.shape->settled) << "one size tells nothing of finer ones";
+}
+
 TEST(SurfaceSummary, FindsTheSphereAndItsOneComponent) {
   const SurfaceSummary summary = summarise(test::unit_sphere());
   EXPECT_EQ(summary.dim, 3);

@@ -56,14 +56,18 @@ struct SummaryOptions {
   Points seeds = {};   ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
 };
 
-/// The shape of a surface in space, from its display mesh on the summary's cells: the numbers of features that are
-/// thinner than a cell are not in them.
+/// The shape of a surface in space, from a mesh on the summary's cells, or on cells of a half, a quarter ... of their
+/// size until two sizes tell the same. Features that are thinner than a cell are not in it.
 struct SurfaceShape {
   double area = 0;      ///< of the triangles, model units squared; off by the order of h^2
   Index euler = 0;      ///< Euler characteristic V - E + F: 2 a closed body, less 2 a handle, less 1 a hole
   bool closed = false;  ///< no triangle has an edge of its own
   /// Open, though neither a domain nor a box of the user's ends it: the surface goes on beyond the box.
   bool cut_by_box = false;
+  double cell = 0;  ///< h of the cells it was counted on, model units
+  /// Cells of twice that size told the same Euler number. False where they told another and finer ones would be too
+  /// many, and where one size was asked for (SummaryOptions::cell).
+  bool settled = false;
 };
 
 /// What a surface is, before asking it anything.
