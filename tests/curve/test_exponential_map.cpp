@@ -199,9 +199,9 @@ TEST(ExponentialMap, StepsAreOfOrderSixteen) {
   const ExponentialResult start = exponential_map(surface, vec({1, 1, 1}), vec({1, -2, 0.5}), 0);
   const auto error = [&](double h) {
     detail::RayStep<3> step(surface);
-    detail::RayState state{start.point, start.direction, {}, {}};
+    detail::RayStep<3>::State state{start.point, start.direction, {}, {}};
     (void)step.look(state);
-    const detail::RayState from = state;
+    const detail::RayStep<3>::State from = state;
     EXPECT_EQ(step.attempt(from, h, 0), detail::RayStep<3>::Verdict::good);
     step.arrive(state);
     const double miss = (state.x - exponential_map(surface, start.point, start.direction, h).point).norm();
