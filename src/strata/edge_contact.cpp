@@ -2,6 +2,7 @@
 #include "strata/edge_contact.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -20,16 +21,16 @@ constexpr Index kMarks = 24;
 double pressed(FacetedSurface& surface, int e, const Point3& x) {
   const SharpEdge edge = surface.edge(e);
   const Point3 kappa = surface.curvature(e, x);
-  double sum = 0;
+  double most = -std::numeric_limits<double>::infinity();
   const std::optional<Star> star = surface.star(x, 1e-7 * surface.scale);
   if (!star) return std::numeric_limits<double>::infinity();
   for (const Wedge& wedge : star->wedges) {
     if (wedge.face != edge.a && wedge.face != edge.b) continue;
     const Point3 ray = wedge.first;
-    Point3 inwards = wedge.normal.cross(ray);
-    sum += kappa.dot(inwards);
+    const Point3 inwards = wedge.normal.cross(ray);
+    most = std::max(most, kappa.dot(inwards));
   }
-  return sum;
+  return most;
 }
 
 bool follow_edges(FacetedSurface& surface, FacetChain& chain) {

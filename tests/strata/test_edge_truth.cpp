@@ -133,5 +133,21 @@ TEST(EdgeTruth, StairsOfBoxesWithKinksInTheirFaces) {
       4.539667176009818);
 }
 
+// Of 2026-12-01: the rim of the upper disc's hole pushes a path off the disc, but the wall inside pulls it. So no
+// shortest path runs along the rim, though the two curvatures sum to less than zero: it cuts the rim twice.
+TEST(EdgeTruth, LeavesARimOnTheSideThatPulls) {
+  const std::string ring = "max((sqrt(x^2+y^2)-2)^2+z^2-0.5, abs(z)-0.4)";
+  const Eigen::Vector3d p(0.42435476632975055, -2.3149004153483768, 0.4);
+  const Eigen::Vector3d q(1.4801835212514307, 1.9910663719377044, 0.4);
+  const double rim = 2 - std::sqrt(0.5 - 0.16);
+  const auto tangent = [&](const Eigen::Vector3d& x) { return std::sqrt(x.head<2>().squaredNorm() - rim * rim); };
+  const auto turn = [&](const Eigen::Vector3d& x) { return std::atan2(x.y(), x.x()); };
+  const double arc = turn(q) - turn(p) - std::atan(tangent(p) / rim) - std::atan(tangent(q) / rim);
+  const double along_the_rim = tangent(p) + tangent(q) + rim * arc;
+  const PathResult there = path(ring, {}, p, q);
+  EXPECT_LT(there.length, along_the_rim - 5e-3);
+  expect_length(path(ring, {}, q, p), there.length);
+}
+
 }  // namespace
 }  // namespace taut
