@@ -20,20 +20,13 @@
 namespace taut::detail {
 namespace {
 
-/// Chains beside the first that pass corners on their other sides.
-constexpr std::size_t kMostOthers = 6;
 /// A loop is next to a closed geodesic where their lengths differ by no more than this part.
 constexpr double kNextTo = 0.02;
 
 /// The shortest of a chain and those that pass its corners on their other sides; not solved where none is.
 FacetChain shortened(FacetedSurface& surface, FacetChain chain, const Context& context) {
-  std::vector<FacetChain> chains{std::move(chain)};
   std::optional<FacetChain> best;
-  for (std::size_t i = 0; i < chains.size() && i <= kMostOthers; ++i) {
-    std::vector<FacetChain> others;
-    FacetChain one = std::move(chains[i]);
-    shorten_chain(surface, one, others, context);
-    for (FacetChain& other : others) chains.push_back(std::move(other));
+  for (FacetChain& one : shorten_with_others(surface, std::move(chain), context)) {
     const bool better = !best || (one.solved && (!best->solved || one.length < best->length));
     if (better) best = std::move(one);
   }

@@ -30,8 +30,6 @@ constexpr double kAllSlack = 3;
 /// A path is at least so many cells long, or the graph is made again around it.
 constexpr double kCellsAlong = 8;
 constexpr int kMostGraphs = 8;
-/// Chains beside one way that pass corners on other sides.
-constexpr std::size_t kMostOthers = 6;
 /// A graph of a whole surface reaches so far beyond it, of its size.
 constexpr double kMargin = 1e-3;
 /// Where the surface goes on, a graph reaches so far beyond the points, of the diagonal of their box; one that is there
@@ -113,14 +111,9 @@ bool FacetSearch::correct(const FacetGraph& graph, const Point3& p, const Point3
   ChainTrouble trouble;  // of the shortest way that was not settled
   for (const FacetWay& way : ways) {
     if (way.length > slack * best) break;
-    // The way's chain, and those that pass a corner on its other side.
-    std::vector<FacetChain> chains{chain_of(*surface_, way)};
-    for (std::size_t i = 0; i < chains.size() && i <= kMostOthers; ++i) {
-      std::vector<FacetChain> others;
-      FacetChain chain = std::move(chains[i]);
-      shorten_chain(*surface_, chain, others, context_);
-      for (FacetChain& other : others) chains.push_back(std::move(other));
-      if (i == 0 && !chain.solved && way.length < unsolved) {
+    bool first = true;  // the way's own chain
+    for (FacetChain& chain : shorten_with_others(*surface_, chain_of(*surface_, way), context_)) {
+      if (std::exchange(first, false) && !chain.solved && way.length < unsolved) {
         unsolved = way.length;
         trouble = chain.trouble;
       }

@@ -15,6 +15,8 @@ constexpr double kStep = 1.0 / 24;
 /// The edge between two points is no farther from their middle than this, of their distance.
 constexpr double kFarEdge = 1.5;
 constexpr int kMostHalvings = 30;
+/// Halves looked at between two given points: steps of 1 / 24 across a whole model and back are some hundred.
+constexpr int kMostHalves = 4096;
 /// Conditions that vanish within this, of the model, meet in one point.
 constexpr double kAround = 1e-8;
 /// The foot of a given point is no farther than this part of the model, and that of the middle between two points of
@@ -30,6 +32,7 @@ class PolylineWay {
     for (Index j = 0; j < polyline.cols(); ++j) {
       const std::optional<Node> node = foot(polyline.col(j), kFarFoot);
       if (!node) return std::nullopt;
+      halves_left_ = kMostHalves;
       if (j == 0) {
         add(*node);
       } else if (!connect(last_, *node, 0)) {
@@ -99,7 +102,7 @@ class PolylineWay {
       step_to(b, face);
       return true;
     }
-    if (halvings >= kMostHalvings) return false;
+    if (halvings >= kMostHalvings || --halves_left_ < 0) return false;
     const Point3 middle = (a.x + b.x) / 2;
     if (face >= 0) {
       Point3 x = middle;
@@ -127,6 +130,7 @@ class PolylineWay {
   FacetedSurface& s_;
   FacetWay way_;
   Node last_;
+  int halves_left_ = 0;
 };
 
 }  // namespace

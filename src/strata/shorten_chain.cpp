@@ -225,4 +225,17 @@ void shorten_chain(FacetedSurface& surface, FacetChain& chain, std::vector<Facet
   chain.locally_shortest = shortest && chain.index == 0;
 }
 
+std::vector<FacetChain> shorten_with_others(FacetedSurface& surface, FacetChain chain, const Context& context) {
+  // Each corner passed on its other side may come to further ones.
+  constexpr std::size_t kMostOthers = 6;
+  std::vector<FacetChain> chains{std::move(chain)};
+  for (std::size_t i = 0; i < chains.size() && i <= kMostOthers; ++i) {
+    std::vector<FacetChain> others;
+    shorten_chain(surface, chains[i], others, context);
+    for (FacetChain& other : others) chains.push_back(std::move(other));
+  }
+  chains.resize(std::min(chains.size(), kMostOthers + 1));  // the rest were not looked at
+  return chains;
+}
+
 }  // namespace taut::detail

@@ -15,4 +15,8 @@ namespace taut::detail {
 /// too.
 void shorten_chain(FacetedSurface& surface, FacetChain& chain, std::vector<FacetChain>& others, const Context& context);
 
+/// A chain and those that pass corners on their other sides, shortened, up to six besides; the first is the one given.
+[[nodiscard]] std::vector<FacetChain> shorten_with_others(FacetedSurface& surface, FacetChain chain,
+                                                          const Context& context);
+
 }  // namespace taut::detail
