@@ -1,5 +1,5 @@
 // Starts between two points, four ways. By the table of landmarks (many pairs on a surface); by distance fields from
-// both ends over cells, with all rivals, past sharp bends by extra rays; by one field and a descent, where rivals are
+// both ends over cells, with all rivals; by one field and a descent, where rivals are
 // not asked for; by walks, where there are no cells. A table is made where it costs less than marching for the pairs to
 // come: on cells as coarse as the bends allow, with as few landmarks as tell ways apart, and it is believed only as far
 // as sampled geodesics bear it out.
@@ -8,17 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "core/parallel.hpp"
 #include "core/stopwatch.hpp"
 #include "curve/polyline.hpp"
-#include "search/fan_out.hpp"
 #include "search/march_check.hpp"
 #include "search/normal_turns.hpp"
-#include "search/side_steps.hpp"
 #include "search/start_rules.hpp"
 #include "taut/curve/newton.hpp"
 #include "taut/march/march.hpp"
@@ -229,15 +226,13 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   if (from_p.at_centres) starts.doubt = kInfinity;  // such distances are too long or too short by far
   const bool rivals = arrives && seeks_rivals() && (options_.all || distance > kRivalRules.near_cells * starts.cell);
   if (!arrives || !seeks_rivals()) starts.doubts.add(Doubt::rivals_not_sought);
-  const bool at_spike = !arrives && seeks_rivals() && ground.bends && ground.bends->along(chord(p, q));
-  if ((rivals || at_spike) && !from_q) from_q = march_towards(ground, q, p, kInfinity);
   if (rivals) {
+    if (!from_q) from_q = march_towards(ground, q, p, kInfinity);
     StartPathOptions options{.excess = kRivalRules.excess, .max_paths = kRivalRules.most};
     if (options_.all) options = {.excess = kInfinity, .max_paths = kRivalRules.most_of_all};
     if (ground.bends && ground.bends->any()) options.spread = kRivalRules.spread_over_bends;
     starts.paths = start_paths_over(surface_, cells, ground.map.get(), from_p, *from_q, options, context_);
   }
-  if ((rivals || at_spike) && ground.bends) add_past_bends(ground, from_p, *from_q, starts);
   if (arrives && starts.paths.empty()) {
     Points descent = descend_over(surface_, cells, ground.map.get(), from_p, q);
     if (descent.cols() >= 2) starts.paths.push_back({distance, std::move(descent)});
@@ -247,26 +242,6 @@ Starts StartFinder::continue_to(const Ground& ground, const DistanceField& from_
   if (options_.keep_cells) starts.walked = walked_cells(cells.grid(), from_p, from_q);
   starts.seconds.march = watch.seconds();
   return starts;
-}
-
-/// Where the surface bends sharply, the ways by the fields may pass on the wrong side of a spike, and from its tip the
-/// march may come to nothing: more ways, that leave the ends there in all directions or step aside on the way.
-void StartFinder::add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
-                                 Starts& starts) const {
-  const Vector p = from_p.sources.col(0);
-  const Vector q = from_q.sources.col(0);
-  const bool found = !starts.paths.empty();
-  const double most = found ? (1 + kRivalRules.excess) * starts.paths.front().length
-                            : kRivalRules.most_diagonals * levels_.box().diagonal();
-  const auto add = [&](std::vector<StartPath> more) { std::ranges::move(more, std::back_inserter(starts.paths)); };
-  if (found) add(side_steps(surface_, ground, starts.paths.front().points, from_p, from_q, most, context_));
-  if (ground.bends->along(p)) add(fan_out(surface_, ground, p, from_q, most, context_));
-  if (ground.bends->along(q)) {
-    std::vector<StartPath> back = fan_out(surface_, ground, q, from_p, most, context_);
-    for (StartPath& start : back) start.points = start.points.rowwise().reverse().eval();
-    add(std::move(back));
-  }
-  std::ranges::stable_sort(starts.paths, {}, &StartPath::length);
 }
 
 bool StartFinder::apart(SurfaceCells& cells, int level, const Vector& p, const Vector& q) const {

@@ -92,8 +92,6 @@ class StartFinder {
   /// Ways where the distances from p are there already, at least up to q; those from q, too, if given.
   [[nodiscard]] Starts continue_to(const Ground& ground, const DistanceField& from_p, const Vector& q,
                                    std::optional<DistanceField> from_q) const;
-  void add_past_bends(const Ground& ground, const DistanceField& from_p, const DistanceField& from_q,
-                      Starts& starts) const;
   /// The distances from `source`, as far as paths to `target` need them that are no longer than `longest`.
   [[nodiscard]] DistanceField march_towards(const Ground& ground, const Vector& source, const Vector& target,
                                             double longest) const;

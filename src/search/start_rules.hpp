@@ -15,8 +15,6 @@ struct RivalRules {
   double spread_over_bends = 0.04;
   /// Where a table bounds the distance, marches keep to the cells that rivals run through, and so many more.
   double margin_cells = 2;
-  /// Where the fields know no way, none longer than so many diagonals of the box is sought.
-  double most_diagonals = 2;
   double error = 0.1;   ///< of marched lengths against those of the geodesics they lead to, relative, at first
   double doubt = 0.03;  ///< a path this much longer than its marched way has missed it, relative
 };
