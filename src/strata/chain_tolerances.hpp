@@ -11,6 +11,9 @@ struct ChainTolerances {
   static constexpr double off_face = 1e-8;  ///< an arc leaves its face where it is farther outside
   /// A corner's angles may be short of pi by this, radians; tangents agree within it.
   static constexpr double angle = 1e-7;
+  /// A face draws a path off an edge where its pull (EdgePull), times the model's size, is more: curvatures along edges
+  /// are good to some 1e-7.
+  static constexpr double pressed = 1e-6;
 };
 
 }  // namespace taut::detail

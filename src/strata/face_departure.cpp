@@ -155,7 +155,7 @@ ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i
   if (edge < 0) return stuck(ChainFault::no_edge, middle);
   const SharpEdge over = surface.edge(edge);
   const int other = over.a == face ? over.b : over.a;
-  const bool follows = other < 0 || pressed(surface, edge, middle) <= kPressed / surface.scale;
+  const bool follows = other < 0 || strongest_pull(surface, edge, middle).curvature <= kPressed / surface.scale;
   // Next to a crossing of the same edge, the path comes to the edge, or leaves it, on the face beyond.
   const auto crosses = [&](std::size_t stop) {
     const bool inner = stop > 0 && stop + 1 < chain.stops.size();

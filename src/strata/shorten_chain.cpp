@@ -27,10 +27,9 @@ namespace {
 using Kind = ChainStop::Kind;
 constexpr int kMostRounds = 60;
 /// What the last check allows: differences of tangents where an edge is followed, which are known to the square root of
-/// the step's rounding; angles of corners, radians; and turns of a followed edge, of the model's size.
+/// the step's rounding; angles of corners, radians.
 constexpr double kContactTangents = 1e-5;
 constexpr double kCornerAngle = 1e-5;
-constexpr double kPressed = 1e-6;
 /// Second variations that are smaller, of the model's size, are neutral: Jacobi fields are good to some 1e-6.
 constexpr double kFalling = 1e-5;
 /// A corner is as near to where Newton's method stopped at the end of an edge, of the model's size.
@@ -120,6 +119,9 @@ ChainMove mend(FacetedSurface& surface, FacetChain& chain, const SlidStops& slid
   }
   ChainMove move = drop_turned_arc(chain);
   for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.fault == ChainFault::none; ++i) {
+    move.changed = lift_from_edge(surface, chain, i);
+  }
+  for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.fault == ChainFault::none; ++i) {
     move = keep_on_face(surface, chain, i, num_shifted);
   }
   return move;
@@ -144,7 +146,7 @@ ChainTrouble broken(FacetedSurface& surface, const FacetChain& chain) {
     if (arc.face >= 0) continue;
     for (const double u : {0.0, 0.25, 0.5, 0.75, 1.0}) {
       const auto j = static_cast<Index>(u * static_cast<double>(arc.points.cols() - 1));
-      if (pressed(surface, arc.edge, arc.points.col(j)) > kPressed / surface.scale) {
+      if (strongest_pull(surface, arc.edge, arc.points.col(j)).curvature > ChainTolerances::pressed / surface.scale) {
         return {ChainFault::not_pressed, arc.points.col(j)};
       }
     }
