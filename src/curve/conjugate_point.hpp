@@ -1,14 +1,12 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "core/linear_algebra.hpp"
 #include "curve/reference_element.hpp"
 #include "taut/core/types.hpp"
 
@@ -22,8 +20,7 @@ namespace taut::detail {
 /// couplings to the ends of the curve.
 template <class Curve, class System>
 std::optional<double> find_conjugate_point(const Curve& curve, System& system, Index failing) {
-  constexpr int Q = System::Q;
-  using Block = Eigen::Matrix<double, Q, Q>;
+  using Block = Eigen::MatrixXd;
   const Index q = system.tangents(0).cols();
   const int p = curve.degree();
   auto& chain = system.chain();
@@ -36,22 +33,23 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
     const auto s = chain.end_block(e);
     const Block load = flux + s.topLeftCorner(q, q) * here;
     // S_01 is square, but not symmetric.
-    next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(load);
+    next = -solve_square(s.topRightCorner(q, q), load);
     flux = (s.bottomLeftCorner(q, q) * here + s.bottomRightCorner(q, q) * next).eval();
     // Keep the fields independent: another basis of their span.
     // A flux is a slope: h makes it a length like Y itself.
     const double h = curve.lengths[static_cast<std::size_t>(e)];
-    Block gram = next.transpose() * next + h * h * (flux.transpose() * flux);
-    const Eigen::LLT<Block> factor(gram);
-    if (factor.info() != Eigen::Success) return std::nullopt;
-    here = factor.matrixU().template solve<Eigen::OnTheRight>(next);
-    flux = factor.matrixU().template solve<Eigen::OnTheRight>(flux).eval();
+    Block pairs(2 * q, q);
+    pairs << next, h * flux;
+    pairs = thin_qr(pairs).q;
+    if (!pairs.allFinite()) return std::nullopt;
+    here = pairs.topRows(q);
+    flux = pairs.bottomRows(q) / h;
     t += h;
   }
 
   // The fields inside the element, as polynomials in R^d: column b of node i is T_i Y_i e_b.
   const auto s = chain.end_block(failing);
-  next = -Block(s.topRightCorner(q, q)).partialPivLu().solve(flux + s.topLeftCorner(q, q) * here);
+  next = -solve_square(s.topRightCorner(q, q), flux + s.topLeftCorner(q, q) * here);
   Eigen::MatrixXd nodal(q, curve.num_nodes());
   const Index d = curve.dim;
   Eigen::MatrixXd fields((p + 1) * d, q);  // rows of node i: i d ..
@@ -75,9 +73,9 @@ std::optional<double> find_conjugate_point(const Curve& curve, System& system, I
   const auto smallest = [&](double xi, Eigen::VectorXd& direction) {
     element.basis(xi, basis);
     const Eigen::MatrixXd field = combine(basis);
-    const Eigen::SelfAdjointEigenSolver<Block> eigen(Block(field.transpose() * field));
-    direction = eigen.eigenvectors().col(0);
-    return eigen.eigenvalues()(0);
+    const auto eigen = symmetric_eigen(Block(field.transpose() * field));
+    direction = eigen.vectors.col(0);
+    return eigen.values(0);
   };
 
   Eigen::VectorXd direction(q);

@@ -2,10 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstddef>
 #include <vector>
+
+#include "core/linear_algebra.hpp"
 
 namespace taut::detail {
 
@@ -105,14 +106,12 @@ class ElementChain {
       }
       if (first_failing_ < 0) first_failing_ = j;
       if (definite || !pivot.allFinite()) return false;
-      eigen_.compute(pivot);
-      const Segment values = eigen_.eigenvalues();
-      const double largest = values.cwiseAbs().maxCoeff();
+      const auto eigen = symmetric_eigen(Block(pivot));
+      const double largest = eigen.values.cwiseAbs().maxCoeff();
       // Singular to rounding: the curve ends in a conjugate point, and no solution is worth having.
-      if (!(values.cwiseAbs().minCoeff() > 1e-14 * largest)) return false;
-      negative_ += static_cast<int>((values.array() < 0).count());
-      const Block inverse =
-          eigen_.eigenvectors() * values.cwiseInverse().asDiagonal() * eigen_.eigenvectors().transpose();
+      if (!(eigen.values.cwiseAbs().minCoeff() > 1e-14 * largest)) return false;
+      negative_ += static_cast<int>((eigen.values.array() < 0).count());
+      const Block inverse = eigen.vectors * eigen.values.cwiseInverse().asDiagonal() * eigen.vectors.transpose();
       link = (inverse * link).eval();
       right = (inverse * right).eval();
     }
@@ -140,12 +139,10 @@ class ElementChain {
   /// Least eigenvalue of the pivot of element end j, after factor(true).
   [[nodiscard]] double least_pivot(Eigen::Index j) {
     const Eigen::Map<Block> pivot = block_of(pivot_, j);
-    // Closed forms where q is known and small.
-    if constexpr (Q == 1) return pivot(0, 0);
     if constexpr (Q == 2) {
       return (pivot.trace() - std::hypot(pivot(0, 0) - pivot(1, 1), 2 * pivot(0, 1))) / 2;
     } else {
-      return eigen_.compute(pivot, Eigen::EigenvaluesOnly).eigenvalues()(0);
+      return symmetric_eigenvalues(Block(pivot))(0);
     }
   }
 
@@ -156,20 +153,20 @@ class ElementChain {
     const Eigen::Index stride = inner_ + q_;
     Eigen::Map<Eigen::VectorXd>(v, m_ * stride + q_).setZero();
     const Eigen::Map<Block> pivot = block_of(pivot_, j);
-    eigen_.compute(pivot);
+    const auto eigen = symmetric_eigen(Block(pivot));
     // Where the pivot failed, the right side was left as it was; else it holds D_j^-1 times it.
     const Segment load = first_failing_ == j ? Segment(segment(j)) : Segment(pivot * segment(j));
     Segment here = Segment::Zero(q_);
-    for (Eigen::Index i = 0; i < q_ && eigen_.eigenvalues()(i) <= eigen_.eigenvalues()(0) + level; ++i) {
-      here += eigen_.eigenvectors().col(i).dot(load) * eigen_.eigenvectors().col(i);
+    for (Eigen::Index i = 0; i < q_ && eigen.values(i) <= eigen.values(0) + level; ++i) {
+      here += eigen.vectors.col(i).dot(load) * eigen.vectors.col(i);
     }
     here.normalize();
     double curvature = here.dot(pivot * here);
     // No load in these directions, or it leads where the energy rises although another direction falls: the softest
     // one.
-    if (!(here.norm() > 0.5) || (curvature > 0 && eigen_.eigenvalues()(0) < 0)) {
-      here = eigen_.eigenvectors().col(0);
-      curvature = eigen_.eigenvalues()(0);
+    if (!(here.norm() > 0.5) || (curvature > 0 && eigen.values(0) < 0)) {
+      here = eigen.vectors.col(0);
+      curvature = eigen.values(0);
     }
     Eigen::Map<Segment>(v + j * stride, q_) = here;
     for (Eigen::Index i = j - 1; i >= 1; --i) {
@@ -234,7 +231,6 @@ class ElementChain {
   std::vector<double> link_;
   std::vector<double> right_;
   Eigen::LLT<Block> cholesky_;
-  Eigen::SelfAdjointEigenSolver<Block> eigen_;
   int negative_ = 0;
   Eigen::Index condensed_ = 0;
   Eigen::Index first_failing_ = -1;

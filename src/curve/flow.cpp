@@ -3,7 +3,6 @@
 // and (A2)); nothing is decided by it.
 #include "taut/curve/flow.hpp"
 
-#include <Eigen/LU>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -14,6 +13,7 @@
 #include "curve/flow_correction.hpp"
 #include "curve/polyline.hpp"
 #include "surface/describe.hpp"
+#include "surface/normal_angle.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -75,7 +75,7 @@ std::optional<FlowResult> chord_of_near_ends(const Surface& surface, const Point
     // What of the one normal space is not in the other: the sines of the angles between them.
     const Eigen::MatrixXd overlap = nodes.normals(0).transpose() * nodes.normals(1);
     turn = (nodes.normals(1) - nodes.normals(0) * overlap).norm();
-    if (!(turn <= kFlat) || !(overlap.determinant() > 0)) return std::nullopt;
+    if (!(turn <= kFlat) || !(detail::same_orientation(nodes.normals(0), nodes.normals(1)))) return std::nullopt;
   }
   FlowResult result;
   result.points = ends;

@@ -5,10 +5,11 @@
 // 10 of L at most, and rounding. The status names the first of the reasons for doubt that applies, gravest first.
 #include "curve/flow_check.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/linear_algebra.hpp"
 
 namespace taut::detail {
 namespace {
@@ -28,7 +29,7 @@ double least_agreement(const FlowNodes& nodes) {
   for (Index i = 0; i + 1 < nodes.size(); ++i) {
     const Eigen::MatrixXd overlap = nodes.normals(i).transpose() * nodes.normals(i + 1);
     // k = 1: the cosine with its sign. k > 1: bases have no common orientation, the product of the cosines has to do.
-    agreement = std::min(agreement, nodes.codim() == 1 ? overlap(0, 0) : std::abs(overlap.determinant()));
+    agreement = std::min(agreement, nodes.codim() == 1 ? overlap(0, 0) : std::abs(determinant(overlap)));
   }
   return agreement;
 }

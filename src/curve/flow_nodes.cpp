@@ -3,8 +3,8 @@
 // more equations by Householder reflections. A rank is judged by |R_jj| against the largest gradient along the curve,
 // so that the scale of F plays no part.
 #include "curve/flow_nodes.hpp"
+#include "core/linear_algebra.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -36,9 +36,9 @@ void FlowNodes::evaluate(Evaluator& evaluator, Points points) {
       correction_.col(i) = normal * (-value_(0, i) / size);
       rank_margin_ = std::min(rank_margin_, size / typical(0));
     } else {
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(gradients(i));
-      triangle = qr.matrixQR().topRows(k).triangularView<Eigen::Upper>();
-      normal = qr.householderQ() * Eigen::MatrixXd::Identity(d, k);
+      const ThinQr qr = thin_qr(gradients(i));
+      triangle = qr.r;
+      normal = qr.q;
       const Vector w = triangle.triangularView<Eigen::Upper>().transpose().solve(value_.col(i));
       correction_.col(i) = -(normal * w);
       for (Index j = 0; j < k; ++j) rank_margin_ = std::min(rank_margin_, std::abs(triangle(j, j)) / typical(j));

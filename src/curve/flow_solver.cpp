@@ -12,13 +12,13 @@
 // neither energy nor curvature falls, to what the noise of F leaves, which the length hardly sees.
 #include "curve/flow_solver.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <utility>
 
+#include "core/linear_algebra.hpp"
 #include "curve/polyline.hpp"
 
 namespace taut::detail {
@@ -123,10 +123,7 @@ void FlowSolver::compute_bases(const FlowNodes& nodes) {
         basis(c + 1, c) += 1;
       }
     } else {
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(nodes.normals(i));
-      Eigen::MatrixXd selector = Eigen::MatrixXd::Zero(dim_, t);
-      selector.bottomRows(t).setIdentity();
-      basis = qr.householderQ() * selector;
+      basis = orthogonal_complement(nodes.normals(i));
     }
   }
 }

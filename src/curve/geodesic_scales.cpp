@@ -6,11 +6,11 @@
 
 #include "taut/curve/exponential_map.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/linear_algebra.hpp"
 #include "curve/gauss_collocation.hpp"
 #include "curve/ray_field.hpp"
 #include "taut/core/error.hpp"
@@ -67,8 +67,7 @@ class FieldRay {
     for (Index i = 0; i < kStages; ++i) {
       Eigen::MatrixXd known(d, k + 1);
       known << field_.normals(i), v.col(i).normalized();
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(known);
-      across.col(i) = qr.householderQ() * Eigen::VectorXd::Unit(d, k + 1);
+      across.col(i) = detail::orthogonal_complement(known);
     }
     Eigen::MatrixXd bent(d, kStages);
     field_.bend_along(kStages, x.data(), 1, across.data(), bent.data());

@@ -4,8 +4,7 @@
 
 #include "taut/curve/geodesic.hpp"
 
-#include <Eigen/Cholesky>
-
+#include "core/linear_algebra.hpp"
 #include "curve/gauss_collocation.hpp"
 #include "taut/core/error.hpp"
 
@@ -47,7 +46,7 @@ class ExtendedStages {
       }
       // F takes (x, c): the first d rows are derivatives by place, the rest by parameter.
       const Eigen::MatrixXd j = gradients.topRows(d_).transpose();  // k x d
-      const Vector lambda = (j * j.transpose()).ldlt().solve(bend);
+      const Vector lambda = detail::solve_square(j * j.transpose(), bend);
       // ds = |v| dt, and x'' by arc length is that by t over |v|^2.
       sum -= tables.end_once(i) * h / v.norm() * (gradients.bottomRows(dim_ - d_) * lambda);
     }

@@ -1,6 +1,6 @@
 // The entrance to Newton's correction: options and start are checked here, and the solver is chosen by the sizes d and
 // k. Up to kManyTangents - 1 tangent directions systems are factored (direct_system.hpp), in kernels of fixed size for
-// one equation in 2, 3 and 4 dimensions; from there on they are solved by conjugate gradients (krylov_system.hpp). The
+// one equation in 3 and 4 dimensions; from there on they are solved by conjugate gradients (krylov_system.hpp). The
 // method itself is in newton_driver.hpp (meshes) and newton_kernel.hpp (one mesh).
 #include "taut/curve/newton.hpp"
 
@@ -34,7 +34,6 @@ std::unique_ptr<NewtonSolver::Backend> make_backend(const Surface& surface, cons
   using detail::make_newton_driver;
   check(options);
   if (surface.codim() == 1) {
-    if (surface.dim() == 2) return make_newton_driver<DirectSystem<2, 1>>(surface, options);
     if (surface.dim() == 3) return make_newton_driver<DirectSystem<3, 1>>(surface, options);
     if (surface.dim() == 4) return make_newton_driver<DirectSystem<4, 1>>(surface, options);
   }

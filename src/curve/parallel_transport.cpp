@@ -9,10 +9,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 
+#include "core/linear_algebra.hpp"
 #include "curve/curve_stages.hpp"
 #include "taut/core/error.hpp"
 
@@ -110,10 +110,8 @@ CarriedVectors parallel_transport(const Surface& surface, const SpectralCurve& c
   }
   if (vectors.cols() == 0) return result;
   // Of many vectors only a basis of their span has to be carried.
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(result.start);
-  const Index rank = qr.rank();
-  if (rank == 0) return result;
-  const Eigen::MatrixXd basis = Eigen::MatrixXd(qr.householderQ()).leftCols(rank);
+  const Eigen::MatrixXd basis = detail::span_basis(result.start);
+  if (basis.cols() == 0) return result;
   const Eigen::MatrixXd coordinates = basis.transpose() * result.start;
   Eigen::MatrixXd carried = basis;
   bool regular = true;

@@ -4,8 +4,8 @@
 // its p'. All points of a batch advance together, a visit a round, at most kMaxSteps; one that has arrived, or whose
 // steps have become shorter than the tolerance, drops out.
 #include "curve/plane_projection.hpp"
+#include "core/linear_algebra.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -20,13 +20,13 @@ constexpr double kNearEnough = 1e-5;  // of the radius
 Vector step_in_plane(const Eigen::Ref<const Eigen::MatrixXd>& gradients, const VectorIn& value, const VectorIn& axis) {
   const Eigen::MatrixXd restricted = gradients - axis * (axis.transpose() * gradients);
   if (gradients.cols() == 1) return restricted.col(0) * (-value(0) / restricted.squaredNorm());
-  return -restricted.transpose().completeOrthogonalDecomposition().solve(value);
+  return -least_squares(restricted.transpose(), value);
 }
 
 /// Length of J^+ F: how far from the surface, to first order.
 double residual_of(const Eigen::Ref<const Eigen::MatrixXd>& gradients, const VectorIn& value) {
   if (gradients.cols() == 1) return std::abs(value(0)) / gradients.norm();
-  return gradients.transpose().completeOrthogonalDecomposition().solve(value).norm();
+  return least_squares(gradients.transpose(), value).norm();
 }
 
 }  // namespace

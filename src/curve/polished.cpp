@@ -6,10 +6,10 @@
 
 #include "curve/polished.hpp"
 
-#include <Eigen/QR>
 #include <cmath>
 #include <memory>
 
+#include "core/linear_algebra.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
 #include "taut/surface/projection.hpp"
@@ -35,8 +35,7 @@ Eigen::MatrixXd frame_across(const Eigen::MatrixXd& normals, const Vector& v) {
   const Index k = normals.cols();
   Eigen::MatrixXd known(d, k + 1);
   known << normals, v;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(known);
-  return Eigen::MatrixXd(qr.householderQ()).rightCols(d - k - 1);
+  return orthogonal_complement(known);
 }
 
 /// About how far a ray ends beside another one, to the angle between them: m12 on a 2-surface, else the length.

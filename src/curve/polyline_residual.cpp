@@ -3,11 +3,11 @@
 // surface. O(m) evaluations in three visits.
 #include "curve/polyline_residual.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/linear_algebra.hpp"
 #include "curve/polyline.hpp"
 #include "march/point_normals.hpp"
 
@@ -24,10 +24,8 @@ double largest_distance(const Surface& surface, const Points& x) {
   for (Index j = 0; j < x.cols(); ++j) {
     const Eigen::Map<const Eigen::MatrixXd> gradients(jacobian.col(j).data(), surface.dim(), surface.codim());
     if (!gradients.allFinite() || !value.col(j).allFinite()) return std::numeric_limits<double>::quiet_NaN();
-    const double distance =
-        surface.codim() == 1
-            ? std::abs(value(0, j)) / gradients.norm()
-            : gradients.transpose().eval().completeOrthogonalDecomposition().solve(value.col(j)).norm();
+    const double distance = surface.codim() == 1 ? std::abs(value(0, j)) / gradients.norm()
+                                                 : detail::least_squares(gradients.transpose(), value.col(j)).norm();
     most = std::max(most, distance);
   }
   return most;

@@ -1,16 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
 
+#include "core/linear_algebra.hpp"
 #include "curve/ray_step.hpp"
 
 namespace taut::detail {
@@ -57,9 +55,7 @@ class RayJacobi {
     } else {
       Eigen::MatrixXd normal(d_, k_ + 1);
       normal << state.normals, state.v;
-      const Eigen::HouseholderQR<Eigen::MatrixXd> qr(normal);
-      const Eigen::MatrixXd all = qr.householderQ();
-      frame_ = all.rightCols(q_);
+      frame_ = orthogonal_complement(normal);
     }
     position_ = Block::Zero(q_, q_);
     velocity_ = Block::Identity(q_, q_);
@@ -91,8 +87,7 @@ class RayJacobi {
     if constexpr (Q != 1) {  // another basis of the same fields keeps them independent
       Eigen::MatrixXd stacked(2 * q_, q_);
       stacked << position_, velocity_;
-      Eigen::HouseholderQR<Eigen::MatrixXd> qr(stacked);
-      const Eigen::MatrixXd basis = qr.householderQ() * Eigen::MatrixXd::Identity(2 * q_, q_);
+      const Eigen::MatrixXd basis = thin_qr(stacked).q;
       position_ = basis.topRows(q_);
       velocity_ = basis.bottomRows(q_);
     }
@@ -119,12 +114,12 @@ class RayJacobi {
     if constexpr (Q == 1) {
       return Values(a(0, 0) / b(0, 0) + h * velocity_(0, 0) / position_(0, 0));
     } else {
-      const Block riccati = velocity_ * position_.partialPivLu().inverse();
-      Block pivot = b.partialPivLu().solve(Block(a)) + h * riccati;
+      const Block riccati = velocity_ * solve_square(position_, Block::Identity(q_, q_));
+      Block pivot = solve_square(b, a) + h * riccati;
       if (!pivot.allFinite()) return Values::Constant(q_, -1);
       // Symmetric but for rounding.
       pivot = ((pivot + pivot.transpose()) / 2).eval();
-      return Eigen::SelfAdjointEigenSolver<Block>(pivot, Eigen::EigenvaluesOnly).eigenvalues();
+      return symmetric_eigenvalues(pivot);
     }
   }
 

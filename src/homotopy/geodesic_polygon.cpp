@@ -5,12 +5,11 @@
 // surface of revolution). Steps leave neutral directions alone. All unknowns together are few: the matrix is dense.
 #include "homotopy/geodesic_polygon.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/linear_algebra.hpp"
 #include "curve/polyline.hpp"
 
 namespace taut::detail {
@@ -171,8 +170,7 @@ void GeodesicPolygon::make_frames() {
     fixed.leftCols(codim) = Eigen::Map<const Eigen::MatrixXd>(normals.col(corner_of(i)).data(), dim, codim);
     // Along the curve a corner may slide without changing the polygon: that direction is left out.
     fixed.col(codim) = (ends_of(arc_out_of(i)).leaving + ends_of(arc_into(i)).arriving).normalized();
-    const Eigen::MatrixXd basis = Eigen::HouseholderQR<Eigen::MatrixXd>(fixed).householderQ();
-    frames_[static_cast<std::size_t>(i)] = basis.rightCols(dim - codim - 1);
+    frames_[static_cast<std::size_t>(i)] = orthogonal_complement(fixed);
   }
 }
 
@@ -228,9 +226,9 @@ bool GeodesicPolygon::differentiate(const Context& context) {
   // Symmetric but for the error of the differences.
   hessian_ = (0.5 * (hessian_ + hessian_.transpose())).eval();
   if (!hessian_.allFinite()) return false;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian_);
-  modes_ = eigen.eigenvectors();
-  curvatures_ = eigen.eigenvalues();
+  const auto eigen = symmetric_eigen(hessian_);
+  modes_ = eigen.vectors;
+  curvatures_ = eigen.values;
   const double least = kNeutral * curvatures_.cwiseAbs().maxCoeff();
   index_ = static_cast<int>((curvatures_.array() < -least).count());
   neutral_ = static_cast<int>((curvatures_.array().abs() <= least).count());

@@ -5,13 +5,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "core/linear_algebra.hpp"
 #include "curve/polyline.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
@@ -66,8 +65,8 @@ double StrandMaker::turn(const VectorIn& a, const VectorIn& b) const {
   const bool near = squared - 2 * overlap.trace() + k < 1;
   // Small angles, by far the most: the root of the sum of squares bounds the largest, without a decomposition.
   if (near && sines < 0.02) return std::sqrt(std::max(0.0, sines));
-  if (!near && !(overlap.determinant() > 0)) return std::numbers::pi;
-  const Vector cosines = Eigen::JacobiSVD<Eigen::MatrixXd>(overlap).singularValues();
+  if (!near && !(determinant(overlap) > 0)) return std::numbers::pi;
+  const Vector cosines = singular_values(overlap);
   return std::acos(std::clamp(cosines.minCoeff(), -1.0, 1.0));
 }
 

@@ -11,7 +11,6 @@ template <class Body>
 decltype(auto) with_dimensions(Index d, Index k, Body&& body) {
   if (k == 1) {
     switch (d) {
-      case 2: return body.template operator()<2, 1>();
       case 3: return body.template operator()<3, 1>();
       case 4: return body.template operator()<4, 1>();
       default: break;

@@ -17,7 +17,6 @@
 #include <optional>
 #include <utility>
 
-#include "cells/normal_turn.hpp"
 #include "core/memory_limit.hpp"
 #include "core/parallel.hpp"
 #include "march/cell_map.hpp"
@@ -25,6 +24,7 @@
 #include "march/dimensions.hpp"
 #include "march/edge.hpp"
 #include "march/stencil.hpp"
+#include "surface/normal_angle.hpp"
 #include "taut/core/error.hpp"
 #include "taut/march/march.hpp"
 

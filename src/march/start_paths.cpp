@@ -17,7 +17,6 @@
 #include <span>
 #include <utility>
 
-#include "cells/normal_turn.hpp"
 #include "core/disjoint_sets.hpp"
 #include "core/parallel.hpp"
 #include "march/dimensions.hpp"
@@ -25,6 +24,7 @@
 #include "march/march_over.hpp"
 #include "march/point_normals.hpp"
 #include "march/surroundings.hpp"
+#include "surface/normal_angle.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {

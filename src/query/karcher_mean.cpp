@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/linear_algebra.hpp"
 #include "march/point_normals.hpp"
 #include "strata/faceted_surface.hpp"
 #include "taut/core/error.hpp"
@@ -120,8 +120,7 @@ class Descent {
     if (d - surface_.codim() != 2) return here.mean_log;
     const Points normals = detail::normals_at(surface_, here.x);
     if (!normals.allFinite()) return here.mean_log;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(normals.reshaped(d, surface_.codim()));
-    const Eigen::MatrixXd tangents = Eigen::MatrixXd(qr.householderQ()).rightCols(2);
+    const Eigen::MatrixXd tangents = detail::orthogonal_complement(normals.reshaped(d, surface_.codim()));
     Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
     for (Index j = 0; j < points_.cols(); ++j) {
       const double length = here.distance(j);

@@ -4,11 +4,11 @@
 // reason is known.
 #include "search/find_obstacle.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/linear_algebra.hpp"
 #include "taut/surface/conformance.hpp"
 
 namespace taut::detail {
@@ -58,15 +58,15 @@ std::optional<Pinch> find_pinch(const Surface& surface, const Vector& x, double 
   const Vector weight = Vector::Ones(1);
   Pinch pinch{x, 0};
   for (int step = 0; step < kMostSteps; ++step) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> hessian(surface.hessian(pinch.point, weight));
-    const Vector& curvature = hessian.eigenvalues();
+    const auto hessian = symmetric_eigen(surface.hessian(pinch.point, weight));
+    const Vector& curvature = hessian.values;
     const double strongest = curvature.cwiseAbs().maxCoeff();
     const Vector gradient = surface.jacobian(pinch.point);
     if (!(strongest > 0) || !gradient.allFinite()) return std::nullopt;
     // Directions in which F does not bend are left alone.
     constexpr double kFlat = 1e-8;
     const Vector bend = (curvature.array().abs() > kFlat * strongest).select(curvature.array().inverse(), 0.0);
-    const Vector move = hessian.eigenvectors() * bend.asDiagonal() * (hessian.eigenvectors().transpose() * gradient);
+    const Vector move = hessian.vectors * bend.asDiagonal() * (hessian.vectors.transpose() * gradient);
     pinch.point -= move;
     if (!((pinch.point - x).norm() <= reach)) return std::nullopt;
     pinch.gap = 2 * std::sqrt(2 * std::abs(surface.value(pinch.point)(0)) / strongest);

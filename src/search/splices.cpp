@@ -9,9 +9,9 @@
 #include <iterator>
 #include <utility>
 
-#include "cells/normal_turn.hpp"
 #include "curve/polyline.hpp"
 #include "march/point_normals.hpp"
+#include "surface/normal_angle.hpp"
 
 namespace taut::detail {
 namespace {

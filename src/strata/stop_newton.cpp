@@ -14,13 +14,13 @@
 // be it no minimum, plain steps are taken.
 #include "strata/stop_newton.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/linear_algebra.hpp"
 #include "strata/chain_tolerances.hpp"
 #include "strata/edge_walk.hpp"
 
@@ -157,14 +157,14 @@ Vector StopNewton::solve(const std::vector<Index>& free) {
     return step;
   }
   const Eigen::MatrixXd symmetric = (matrix + matrix.transpose()) / 2;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(symmetric);
-  const double largest = eigen.eigenvalues().cwiseAbs().maxCoeff();
-  Vector along = eigen.eigenvectors().transpose() * residual;
+  const auto eigen = symmetric_eigen(symmetric);
+  const double largest = eigen.values.cwiseAbs().maxCoeff();
+  Vector along = eigen.vectors.transpose() * residual;
   for (Index i = 0; i < along.size(); ++i) {
-    const double steepness = std::max(std::abs(eigen.eigenvalues()(i)), kFlat * largest + 1e-300);
-    along(i) = -along(i) / (c_.stationary && eigen.eigenvalues()(i) < 0 ? -steepness : steepness);
+    const double steepness = std::max(std::abs(eigen.values(i)), kFlat * largest + 1e-300);
+    along(i) = -along(i) / (c_.stationary && eigen.values(i) < 0 ? -steepness : steepness);
   }
-  step(free) = eigen.eigenvectors() * along;
+  step(free) = eigen.vectors * along;
   return step;
 }
 
@@ -230,7 +230,7 @@ Vector StopNewton::second_variation() {
   matrix_.setZero(n, n);
   for (Index i = 0; i < n; ++i) set_crossing(i);
   const Eigen::MatrixXd symmetric = (matrix_ + matrix_.transpose()) / 2;
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric, Eigen::EigenvaluesOnly).eigenvalues();
+  return symmetric_eigenvalues(symmetric);
 }
 
 SlidStops StopNewton::run(const Context& context) {

@@ -1,6 +1,6 @@
+#include "core/linear_algebra.hpp"
 #include "taut/surface/conformance.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -24,6 +24,8 @@ constexpr double kElsewhere = 0.02;
 /// The coordinates say little about the size of a surface: each other point is sought this many times as far.
 constexpr double kFarther = 5;
 constexpr int kSeeds = 24;
+/// A pivot below this part of the largest is that of a dependent equation.
+constexpr double kDependent = 1e-9;
 
 /// Uniform in [-1, 1).
 double either_way(std::mt19937_64& random) { return 2 * detail::random_share(random) - 1; }
@@ -101,7 +103,7 @@ std::vector<RankDiagnosis::Finding> find_faults(const ImplicitFunction& function
     }
     const Vector unit = gradient.normalized();
     if (basis.cols() > 0) {
-      const Vector share = basis.householderQr().solve(unit);
+      const Vector share = detail::least_squares(basis, unit);
       if (basis.cols() == d || (unit - basis * share).norm() <= kLost) {
         RankDiagnosis::Finding finding{Fault::dependent, i, {}};
         for (Index j = 0; j < share.size(); ++j) {
@@ -127,10 +129,7 @@ bool descend_to_surface(const ImplicitFunction& function, Vector& x) {
     const Eigen::MatrixXd gradients = jacobian_of(function, x).reshaped(function.dim(), function.codim());
     if (!value.allFinite()) return false;
     if (!gradients.allFinite()) return value.norm() <= 1e-12;  // exactly on the root of a sum of squares
-    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-    solver.setThreshold(1e-9);
-    solver.compute(gradients.transpose());
-    const Vector move = solver.solve(value);
+    const Vector move = detail::least_squares(gradients.transpose(), value, kDependent);
     const double size = move.norm();
     if (!(size < 1e6 * scale)) return false;
     x -= move;

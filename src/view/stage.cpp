@@ -1,6 +1,5 @@
 #include "view/stage.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -8,6 +7,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "core/linear_algebra.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
@@ -114,8 +114,7 @@ class Projection {
       covariance += y * y.transpose();
     });
     if (!covariance.allFinite()) throw InvalidArgument("a path to draw has a coordinate that is not finite");
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-    axes_ = solver.eigenvectors().rightCols(3).rowwise().reverse();
+    axes_ = symmetric_eigen(covariance).vectors.rightCols(3).rowwise().reverse();
     for (auto axis : axes_.colwise()) {  // the sign of an eigenvector is arbitrary: its largest entry shall be positive
       Index largest = 0;
       axis.cwiseAbs().maxCoeff(&largest);

@@ -1,10 +1,10 @@
 #include "walk/follow_curve.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "core/linear_algebra.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
 
@@ -82,8 +82,7 @@ class Ray {
 
 std::vector<Points> follow_curve(const Surface& surface, const Vector& p, const Vector& q, const Context& context) {
   const Points gradients = surface.jacobian(p).reshaped(surface.dim(), surface.codim());
-  const Eigen::HouseholderQR<Points> qr(gradients);
-  const Vector tangent = qr.householderQ() * Vector::Unit(surface.dim(), surface.dim() - 1);
+  const Vector tangent = orthogonal_complement(gradients);
   std::vector<Points> ways;
   Ray ray(surface, context);
   for (const double sign : {1.0, -1.0}) {

@@ -1,10 +1,10 @@
 #include "walk/surface_walker.hpp"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "surface/normal_angle.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut::detail {
@@ -50,9 +50,7 @@ Vector SurfaceWalker::tangent_part(const Foothold& at, Vector r) const {
 bool SurfaceWalker::turns(const Foothold& a, const Foothold& b) const {
   const Eigen::Map<const Eigen::MatrixXd> na(a.normals.data(), d_, k_);
   const Eigen::Map<const Eigen::MatrixXd> nb(b.normals.data(), d_, k_);
-  const Eigen::MatrixXd overlap = na.transpose() * nb;
-  const double sines = static_cast<double>(k_) - overlap.squaredNorm();
-  return !(sines <= kMostTurn && overlap.determinant() > 0);
+  return !(squared_sines(na, nb) <= kMostTurn && same_orientation(na, nb));
 }
 
 bool SurfaceWalker::walk(const Foothold& from, const Vector& target, Index most, std::vector<Foothold>& steps) {

@@ -1,13 +1,13 @@
 #include "surface/normals/bridged_gap.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
 
+#include "core/linear_algebra.hpp"
 #include "core/parallel.hpp"
+#include "surface/normals/sample_quadric.hpp"
 
 // With h the height along the normal and t the place across it, the samples around one that face its way and those that
 // face away are h = a + b.t + t^T C t +- gap / 2, by least squares: noise averages out. Where the one's outsides are
@@ -35,7 +35,6 @@ constexpr double kFewOfAll = 0.005;
 constexpr Index kMostProbes = 20000;
 constexpr Index kGrain = 64;
 
-template <int D>
 class Probe {
  public:
   Probe(const Points& points, const Points& normals, const KdTree& tree, const ImplicitFunction& function)
@@ -50,23 +49,23 @@ class Probe {
       if (normals_.col(near.index).dot(normal) < kOtherWay) ++other_way;
     }
     if (other_way < kFewest) return 0;
-    const Eigen::HouseholderQR<Direction> frame(normal);
-    const Square axes = frame.householderQ();
     const double radius = std::sqrt(found_.back().squared_distance);
     if (!(radius > 0)) return 0;
-    Eigen::Matrix<double, kTerms + 1, Eigen::Dynamic, 0, kTerms + 1, kNearest> terms(kTerms + 1, kNearest);
-    Eigen::Matrix<double, 1, Eigen::Dynamic, Eigen::RowMajor, 1, kNearest> height(kNearest);
-    Eigen::Matrix<double, D - 1, Eigen::Dynamic, D == 2 ? Eigen::RowMajor : Eigen::ColMajor, D - 1, kNearest> places(
-        D - 1, kNearest);
+    const Axes tangents = orthogonal_complement(normal);
+    const Index num_tangents = tangents.cols();
+    const Index num_terms = num_quadric_terms(num_tangents);
+    AroundTerms terms(num_terms + 1, kNearest);
+    AroundRow height(kNearest);
+    Around places(num_tangents, kNearest);
     Index n = 0;
     Index same_way = 0;
-    Place aside = Place::Zero();
+    Direction aside = Direction::Zero(num_tangents);
     for (const Neighbour& near : found_) {
       const double cosine = normals_.col(near.index).dot(normal);
       if (std::abs(cosine) < kSameWay) continue;  // of a rim
       const Direction u = (points_.col(near.index) - points_.col(i)) / radius;
-      const Place place = axes.template rightCols<D - 1>().transpose() * u;
-      terms.col(n) << terms_at(place), (cosine > 0 ? 0.5 : -0.5);
+      const Direction place = tangents.transpose().lazyProduct(u);
+      terms.col(n) << quadric_terms(place), (cosine > 0 ? 0.5 : -0.5);
       height(n++) = normal.dot(u);
       if (cosine > 0) {
         places.col(same_way++) = place;
@@ -74,45 +73,25 @@ class Probe {
         aside += place / static_cast<double>(other_way);
       }
     }
-    if (n < 2 * (kTerms + 1) || same_way < kFewest || aside.norm() > kMostAside) return 0;
-    Eigen::Matrix<double, kTerms + 1, kTerms + 1> equations = terms.leftCols(n) * terms.leftCols(n).transpose();
-    equations.diagonal().array() += kRidge * static_cast<double>(n);
-    const Eigen::Matrix<double, kTerms + 1, 1> solution =
-        equations.ldlt().solve(terms.leftCols(n) * height.head(n).transpose());
-    const double gap = solution(kTerms);
-    const double left = (height.head(n) - solution.transpose() * terms.leftCols(n)).norm() /
-                        std::sqrt(static_cast<double>(n - kTerms - 1));
+    if (n < 2 * (num_terms + 1) || same_way < kFewest || aside.norm() > kMostAside) return 0;
+    const TermVector solution = fit_terms(terms.leftCols(n), height.head(n));
+    const double gap = solution(num_terms);
+    const double left = (height.head(n) - solution.transpose().lazyProduct(terms.leftCols(n))).norm() /
+                        std::sqrt(static_cast<double>(n - num_terms - 1));
     if (std::abs(gap) < kLeastGap * left) return 0;
-    const auto depth = [&](const Place& place) {
-      const double middle = solution.template head<kTerms>().dot(terms_at(place));
-      const Direction x = points_.col(i) + radius * (middle * normal + axes.template rightCols<D - 1>() * place);
+    const auto depth = [&](const Direction& place) {
+      const double middle = solution.head(num_terms).dot(quadric_terms(place));
+      const Direction x = points_.col(i) + radius * (middle * normal + tangents.lazyProduct(place));
       double f = 0;
       evaluator_->evaluate({.n = 1, .x = x.data(), .value = &f});
       return gap > 0 ? -f : f;
     };
-    bool bridged = depth(Place::Zero()) < kLeastDepth * std::abs(gap) * radius;
+    bool bridged = depth(Direction::Zero(num_tangents)) < kLeastDepth * std::abs(gap) * radius;
     for (Index j = 1; j < same_way && !bridged; ++j) bridged = depth(0.5 * places.col(j)) < 0;
     return bridged ? std::abs(gap) * radius : 0;
   }
 
  private:
-  static constexpr int kTerms = 1 + (D - 1) + (D - 1) * D / 2;
-  static constexpr double kRidge = 1e-10;  // where samples in rows leave a term open
-  using Direction = Eigen::Matrix<double, D, 1>;
-  using Square = Eigen::Matrix<double, D, D>;
-  using Place = Eigen::Matrix<double, D - 1, 1>;
-
-  static Eigen::Matrix<double, kTerms, 1> terms_at(const Place& place) {
-    Eigen::Matrix<double, kTerms, 1> terms;
-    terms(0) = 1;
-    int row = 1;
-    for (int a = 0; a < D - 1; ++a) terms(row++) = place(a);
-    for (int a = 0; a < D - 1; ++a) {
-      for (int b = 0; b <= a; ++b) terms(row++) = place(a) * place(b);
-    }
-    return terms;
-  }
-
   const Points& points_;
   const Points& normals_;
   const KdTree& tree_;
@@ -120,14 +99,13 @@ class Probe {
   std::vector<Neighbour> found_;
 };
 
-template <int D>
 MergedSheets find(const Points& points, const Points& normals, const KdTree& tree, const ImplicitFunction& function,
                   const Context& context) {
   const Index num_probes = std::min(points.cols(), kMostProbes);
   const auto sample = [&](Index probe) { return probe * points.cols() / num_probes; };
   std::vector<double> gap(static_cast<std::size_t>(num_probes));
   parallel_for(context, 0, num_probes, kGrain, [&](Index first, Index last) {
-    Probe<D> probe(points, normals, tree, function);
+    Probe probe(points, normals, tree, function);
     for (Index j = first; j < last; ++j) gap[static_cast<std::size_t>(j)] = probe(sample(j));
   });
   MergedSheets merged;
@@ -147,10 +125,8 @@ MergedSheets find(const Points& points, const Points& normals, const KdTree& tre
 
 MergedSheets find_bridged_gap(const Points& points, const Points& normals, const KdTree& tree,
                               const ImplicitFunction& function, const Context& context) {
-  if (points.cols() < 2 * kNearest) return {};
-  if (points.rows() == 2) return find<2>(points, normals, tree, function, context);
-  if (points.rows() == 3) return find<3>(points, normals, tree, function, context);
-  return {};
+  if (points.cols() < 2 * kNearest || points.rows() > 3) return {};
+  return find(points, normals, tree, function, context);
 }
 
 }  // namespace taut::detail

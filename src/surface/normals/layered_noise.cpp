@@ -1,13 +1,12 @@
 #include "surface/normals/layered_noise.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
 
 #include "core/parallel.hpp"
+#include "surface/normals/sample_quadric.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 
 // Two faces of a plate with noise of 0.3 of their gap cannot be parted sample by sample, but together: the distances of
@@ -26,6 +25,7 @@ namespace taut::detail {
 namespace {
 
 constexpr Index kWindow = 48;
+static_assert(kWindow <= kMostAround);
 constexpr Index kFewestInWindow = 24;
 constexpr Index kRegion = 800;
 /// 40,000 samples have 100; a third of them, spread, says as much and takes a third of the time.
@@ -48,11 +48,10 @@ struct Distance {
   double deviation = 0;  // model units
 };
 
-template <int D>
 class Window {
  public:
   Window(const Points& points, const Points& normals, const KdTree& tree)
-      : points_(points), normals_(normals), tree_(tree) {}
+      : points_(points), normals_(normals), tree_(tree), u_(points.rows(), kWindow), local_(points.rows(), kWindow) {}
 
   std::optional<Distance> operator()(Index i) {
     const auto other_way = [&](const Neighbour& near) { return normals_.col(near.index).dot(normals_.col(i)) <= 0; };
@@ -68,12 +67,9 @@ class Window {
     for (Index j = 0; j < n; ++j)
       u_.col(j) = (points_.col(found_[static_cast<std::size_t>(j)].index) - points_.col(i)) / radius;
     const auto u = u_.leftCols(n);
-    const Direction mean = u.rowwise().mean();
-    const Eigen::Matrix<double, D, Eigen::Dynamic, 0, D, kWindow> centred = u.colwise() - mean;
-    const Eigen::SelfAdjointEigenSolver<Square> spread(centred * centred.transpose());
-    Square axes = spread.eigenvectors();  // the first across the sheet
+    Axes axes = axes_by_spread(u);  // the first across the sheet
     if (axes.col(0).dot(normals_.col(i)) < 0) axes.col(0) *= -1;
-    local_.leftCols(n) = axes.transpose() * u;
+    local_.leftCols(n) = axes.transpose().lazyProduct(u);
     const double near = scatter_of(n / 2).deviation;
     const Scatter all = scatter_of(n);
     if (!(all.deviation > kExact)) return std::nullopt;
@@ -81,11 +77,7 @@ class Window {
   }
 
  private:
-  static constexpr int kTerms = 1 + (D - 1) + (D - 1) * D / 2;
-  static constexpr double kRidge = 1e-10;  // where samples in rows leave a term open
-  static constexpr double kExact = 1e-9;   // of the window: rounding
-  using Direction = Eigen::Matrix<double, D, 1>;
-  using Square = Eigen::Matrix<double, D, D>;
+  static constexpr double kExact = 1e-9;  // of the window: rounding
 
   struct Scatter {
     double own = 0;        // the sample's distance from the quadric
@@ -94,25 +86,17 @@ class Window {
 
   /// About the quadric through the nearest n.
   [[nodiscard]] Scatter scatter_of(Index n) const {
-    const auto place = local_.leftCols(n).template bottomRows<D - 1>();
-    Eigen::Matrix<double, kTerms, Eigen::Dynamic, 0, kTerms, kWindow> terms(kTerms, n);
-    terms.row(0).setOnes();
-    int row = 1;
-    for (int a = 0; a < D - 1; ++a) terms.row(row++) = place.row(a);
-    for (int a = 0; a < D - 1; ++a) {
-      for (int b = 0; b <= a; ++b) terms.row(row++) = place.row(a).cwiseProduct(place.row(b));
-    }
-    Eigen::Matrix<double, kTerms, kTerms> equations = terms * terms.transpose();
-    equations.diagonal().array() += kRidge * static_cast<double>(n);
-    const Eigen::Matrix<double, kTerms, 1> quadric =
-        equations.ldlt().solve(terms * local_.leftCols(n).row(0).transpose());
+    const Index num_tangents = local_.rows() - 1;
+    AroundTerms terms(num_quadric_terms(num_tangents), n);
+    for (Index j = 0; j < n; ++j) terms.col(j) = quadric_terms(local_.col(j).tail(num_tangents));
+    const TermVector quadric = fit_terms(terms, local_.row(0).head(n).eval());
     Scatter scatter;
     for (Index j = 0; j < n; ++j) {
       const double rest = local_(0, j) - quadric.dot(terms.col(j));
       if (j == 0) scatter.own = rest;
       scatter.deviation += rest * rest;
     }
-    scatter.deviation = std::sqrt(scatter.deviation / static_cast<double>(n - kTerms));
+    scatter.deviation = std::sqrt(scatter.deviation / static_cast<double>(n - terms.rows()));
     return scatter;
   }
 
@@ -120,8 +104,8 @@ class Window {
   const Points& normals_;
   const KdTree& tree_;
   std::vector<Neighbour> found_;
-  Eigen::Matrix<double, D, kWindow> u_;      // the nearest, seen from the sample, the farthest at 1
-  Eigen::Matrix<double, D, kWindow> local_;  // the same, the first coordinate across the sheet
+  Around u_;      // the nearest, seen from the sample, the farthest at 1
+  Around local_;  // the same, the first coordinate across the sheet
 };
 
 /// Two normal distributions of one deviation, fitted to values by expectation and maximisation in turns.
@@ -178,7 +162,6 @@ Layers fit_layers(const std::vector<Distance>& distances) {
   return {share, (high - low) / deviation, before - single, high - low};
 }
 
-template <int D>
 MergedSheets find(const Points& points, const Points& normals, const KdTree& tree, const Context& context) {
   const Index region = std::min(kRegion, points.cols());
   std::vector<Index> centres = spread_by_count(points, tree, region);
@@ -192,7 +175,7 @@ MergedSheets find(const Points& points, const Points& normals, const KdTree& tre
     context.check_cancelled();
     tree.nearest(points.col(centre).data(), region, members);
     parallel_for(context, 0, static_cast<Index>(members.size()), kGrain, [&](Index first, Index last) {
-      Window<D> window(points, normals, tree);
+      Window window(points, normals, tree);
       for (Index i = first; i < last; ++i) {
         found[static_cast<std::size_t>(i)] = window(members[static_cast<std::size_t>(i)].index);
       }
@@ -227,10 +210,8 @@ MergedSheets find(const Points& points, const Points& normals, const KdTree& tre
 
 MergedSheets find_layered_noise(const Points& points, const Points& normals, const KdTree& tree,
                                 const Context& context) {
-  if (points.cols() < 2 * kWindow) return {};
-  if (points.rows() == 2) return find<2>(points, normals, tree, context);
-  if (points.rows() == 3) return find<3>(points, normals, tree, context);
-  return {};
+  if (points.cols() < 2 * kWindow || points.rows() > 3) return {};
+  return find(points, normals, tree, context);
 }
 
 }  // namespace taut::detail

@@ -1,7 +1,5 @@
 #include "surface/normals/sheet_split.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "core/parallel.hpp"
+#include "surface/normals/sample_quadric.hpp"
 
 // Around a sample, h the height over a plane and t the place in it, two sheets that run side by side are
 //   h = a + b.t + t^T C t        and        h = a + b.t + t^T C t + gap,
@@ -42,19 +41,23 @@ constexpr Index kMaxProbes = 1000;
 constexpr double kFewProbes = 0.01;
 constexpr Index kGrain = 64;
 
-template <int D>
 class Splitter {
  public:
   static constexpr int kNearest = SheetSplit::kNearest;
-  using Direction = Eigen::Matrix<double, D, 1>;
 
   struct Split {
     double clarity = 0;
     std::uint32_t across = 0;  // bit j: the j-th nearest lies on the other sheet than the sample itself, the nearest
-    Direction normal = Direction::Zero();
+    Direction normal;
   };
 
-  Splitter(const Points& points, const KdTree& tree) : points_(points), tree_(tree) {}
+  Splitter(const Points& points, const KdTree& tree)
+      : points_(points),
+        tree_(tree),
+        num_tangents_(points.rows() - 1),
+        num_terms_(num_quadric_terms(num_tangents_)),
+        u_(points.rows(), kNearest),
+        terms_(num_terms_ + 1, kNearest) {}
 
   /// The clearest way to part the nearest of sample i, over planes through the nearest 24, 12 and 6: of two sheets that
   /// are farther apart the last are on one.
@@ -75,27 +78,13 @@ class Splitter {
   [[nodiscard]] const std::vector<Neighbour>& nearest() const { return found_; }
 
  private:
-  static constexpr int kTangents = D - 1;
-  static constexpr int kTerms = 1 + kTangents + kTangents * (kTangents + 1) / 2;
-  /// A column a sample. Their number is no constant to the compiler: it would unroll all products, for minutes.
-  template <int R>
-  using PerSample = Eigen::Matrix<double, R, Eigen::Dynamic, R == 1 ? Eigen::RowMajor : Eigen::ColMajor, R, kNearest>;
-  using Row = PerSample<1>;
-
   /// Over the plane of least spread of the nearest `count`.
-  Split over_plane_of(int count) {
-    const Direction mean = u_.leftCols(count).rowwise().mean();
-    const Eigen::Matrix<double, D, Eigen::Dynamic> centred = u_.leftCols(count).colwise() - mean;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, D, D>> spread(centred * centred.transpose());
-    axes_ = spread.eigenvectors();
-    height_ = axes_.col(0).transpose() * u_;
-    const PerSample<kTangents> place = axes_.template rightCols<kTangents>().transpose() * u_;
-    terms_.row(0).setOnes();
-    int row = 1;
-    for (int a = 0; a < kTangents; ++a) terms_.row(row++) = place.row(a);
-    for (int a = 0; a < kTangents; ++a) {
-      for (int b = 0; b <= a; ++b) terms_.row(row++) = place.row(a).cwiseProduct(place.row(b));
-    }
+  Split over_plane_of(Index count) {
+    axes_ = axes_by_spread(u_.leftCols(count));
+    const Around local = axes_.transpose().lazyProduct(u_);
+    height_ = local.row(0);
+    place_ = local.bottomRows(num_tangents_);
+    for (Index j = 0; j < kNearest; ++j) terms_.col(j).head(num_terms_) = quadric_terms(place_.col(j));
     return widest_gaps();
   }
 
@@ -112,7 +101,7 @@ class Splitter {
     std::sort(gaps.begin(), gaps.end());
     Split best;
     for (int g = 0; g < kTried; ++g) {
-      Row upper = Row::Zero(kNearest);
+      AroundRow upper = AroundRow::Zero(kNearest);
       for (int j = gaps[static_cast<std::size_t>(g)].second; j < kNearest; ++j) {
         upper(order[static_cast<std::size_t>(j)]) = 1;
       }
@@ -123,26 +112,21 @@ class Splitter {
   }
 
   /// `upper`: 1 for the samples on the upper sheet, at first.
-  Split in_turns(Row upper) {
-    constexpr double kRidge = 1e-10;  // where samples in rows leave a term open
-    PerSample<kTerms + 1> all(kTerms + 1, kNearest);
-    all.template topRows<kTerms>() = terms_;
+  Split in_turns(AroundRow upper) {
     Split split;
     for (int pass = 0; pass < kMostPasses; ++pass) {
       const double count = upper.sum();
       if (count < kFewestOnSheet || count > kNearest - kFewestOnSheet) return {};
-      all.row(kTerms) = upper;
-      Eigen::Matrix<double, kTerms + 1, kTerms + 1> equations = all * all.transpose();
-      equations.diagonal().array() += kRidge * kNearest;
-      const Eigen::Matrix<double, kTerms + 1, 1> solution = equations.ldlt().solve(all * height_.transpose());
-      const Row rest = height_ - solution.transpose() * all;
-      const double gap = solution(kTerms);
-      const double left = std::sqrt(rest.squaredNorm() / (kNearest - kTerms - 1));
+      terms_.row(num_terms_) = upper;
+      const TermVector solution = fit_terms(terms_, height_);
+      const AroundRow rest = height_ - solution.transpose().lazyProduct(terms_);
+      const double gap = solution(num_terms_);
+      const double left = std::sqrt(rest.squaredNorm() / static_cast<double>(kNearest - num_terms_ - 1));
       split.clarity = gap > 0 ? gap / std::max(left, kRidge) : 0;
       split.normal = axes_.col(0);
-      for (int a = 0; a < kTangents; ++a) split.normal -= solution(1 + a) * axes_.col(1 + a);
+      for (Index a = 0; a < num_tangents_; ++a) split.normal -= solution(1 + a) * axes_.col(1 + a);
       // The height of each over the lower sheet.
-      const Row next = ((rest + gap * upper).array() > 0.5 * gap).template cast<double>();
+      const AroundRow next = ((rest + gap * upper).array() > 0.5 * gap).template cast<double>();
       if (next == upper) break;
       upper = next;
     }
@@ -155,23 +139,21 @@ class Splitter {
   }
 
   /// By polynomials of degree four in the place: rows of samples on a bent sheet differ by their fourth power.
-  [[nodiscard]] bool told_by_place(const Row& upper) const {
-    constexpr double kRidge = 1e-10;
-    constexpr int kPowers = D == 2 ? 5 : 15;
-    const PerSample<kTangents> place = terms_.template middleRows<kTangents>(1);
-    PerSample<kPowers> powers(kPowers, kNearest);
-    int row = 0;
-    Row first = Row::Ones(kNearest);
-    for (int a = 0; a <= 4; ++a, first = first.cwiseProduct(place.row(0)).eval()) {
-      Row product = first;
-      for (int b = 0; b <= (D == 2 ? 0 : 4 - a); ++b, product = product.cwiseProduct(place.row(kTangents - 1)).eval()) {
-        powers.row(row++) = product;
+  [[nodiscard]] bool told_by_place(const AroundRow& upper) const {
+    const bool flat = num_tangents_ == 1;
+    AroundTerms powers(flat ? 5 : 15, kNearest);
+    for (Index j = 0; j < kNearest; ++j) {
+      Index row = 0;
+      double first = 1;
+      for (int a = 0; a <= 4; ++a, first *= place_(0, j)) {
+        double product = first;
+        for (int b = 0; b <= (flat ? 0 : 4 - a); ++b, product *= place_(num_tangents_ - 1, j)) {
+          powers(row++, j) = product;
+        }
       }
     }
-    Eigen::Matrix<double, kPowers, kPowers> equations = powers * powers.transpose();
-    equations.diagonal().array() += kRidge * kNearest;
-    const Eigen::Matrix<double, kPowers, 1> solution = equations.ldlt().solve(powers * upper.transpose());
-    const double open = (upper - solution.transpose() * powers).squaredNorm();
+    const TermVector solution = fit_terms(powers, upper);
+    const double open = (upper - solution.transpose().lazyProduct(powers)).squaredNorm();
     const double all = (upper.array() - upper.mean()).matrix().squaredNorm();
     return open < (1 - kMostByPlace) * all;
   }
@@ -180,16 +162,18 @@ class Splitter {
   const KdTree& tree_;
   std::vector<Neighbour> found_;
   int n_ = 0;
-  PerSample<D> u_{D, kNearest};       // the nearest, seen from the sample, the farthest at 1
-  Eigen::Matrix<double, D, D> axes_;  // the first across the sheet
-  Row height_{1, kNearest};
-  PerSample<kTerms> terms_{kTerms, kNearest};
+  Index num_tangents_;
+  Index num_terms_;  // of the quadric
+  Around u_;         // the nearest, seen from the sample, the farthest at 1
+  Axes axes_;        // the first across the sheet
+  Around place_;     // along the others
+  AroundRow height_;
+  AroundTerms terms_;  // the quadric's, then whether a sample lies on the upper sheet
 };
 
-template <int D>
 bool worth_while(const Points& points, const KdTree& tree) {
   const Index num_probes = std::min(points.cols(), kMaxProbes);
-  Splitter<D> split(points, tree);
+  Splitter split(points, tree);
   Index clear = 0;
   for (Index probe = 0; probe < num_probes; ++probe) {
     if (split(probe * points.cols() / num_probes).clarity >= kClear) ++clear;
@@ -199,13 +183,12 @@ bool worth_while(const Points& points, const KdTree& tree) {
 
 }  // namespace
 
-template <int D>
 void SheetSplit::find(const Points& points, const KdTree& tree, const Context& context) {
-  if (!worth_while<D>(points, tree)) return;
+  if (!worth_while(points, tree)) return;
   const Index n = points.cols();
-  std::vector<typename Splitter<D>::Split> split(static_cast<std::size_t>(n));
+  std::vector<Splitter::Split> split(static_cast<std::size_t>(n));
   parallel_for(context, 0, n, kGrain, [&](Index first, Index last) {
-    Splitter<D> splitter(points, tree);
+    Splitter splitter(points, tree);
     for (Index i = first; i < last; ++i) split[static_cast<std::size_t>(i)] = splitter(i);
   });
   std::vector<Neighbour> near;
@@ -233,8 +216,7 @@ void SheetSplit::find(const Points& points, const KdTree& tree, const Context& c
 SheetSplit::SheetSplit(const Points& points, const KdTree& tree, const Context& context)
     : slot_(static_cast<std::size_t>(points.cols()), -1) {
   if (points.cols() < 2 * kNearest) return;
-  if (points.rows() == 2) find<2>(points, tree, context);
-  if (points.rows() == 3) find<3>(points, tree, context);
+  if (points.rows() == 2 || points.rows() == 3) find(points, tree, context);
 }
 
 std::vector<Index> SheetSplit::beside(Index i) const {

@@ -51,7 +51,6 @@ class SheetSplit {
     return found_[static_cast<std::size_t>(slot_[static_cast<std::size_t>(i)])];
   }
   [[nodiscard]] Relation as_seen_from(std::uint32_t i, std::uint32_t j) const;
-  template <int D>
   void find(const Points& points, const KdTree& tree, const Context& context);
 
   std::vector<std::int32_t> slot_;  // of each sample in found_, or -1

@@ -1,9 +1,9 @@
 #include "surface/normals/spread_normals.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear_algebra.hpp"
 #include "core/parallel.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
 
@@ -28,20 +28,20 @@ struct Spread {
       const Direction u = points.col(q.index) - mean;
       moment.noalias() += u * u.transpose();
     }
-    solver.compute(moment);
+    eigen = symmetric_eigen(moment);
   }
   /// Do the points determine a hyperplane?
   [[nodiscard]] bool determined() const {
-    const auto& values = solver.eigenvalues();
+    const auto& values = eigen.values;
     return values(1) > 1e-12 * values(values.size() - 1);
   }
   /// Spread across the sheet beside the least spread within it.
   [[nodiscard]] double thickness() const {
-    const auto& values = solver.eigenvalues();
+    const auto& values = eigen.values;
     return values(1) > 0 ? std::sqrt(std::max(values(0), 0.0) / values(1)) : 0;
   }
 
-  Eigen::SelfAdjointEigenSolver<Square> solver;
+  SymmetricEigen<Square> eigen;
 };
 
 template <int D>
@@ -53,7 +53,7 @@ void least_spread_in(const Points& points, const KdTree& tree, const std::vector
       for (Index count = neighbours;; count *= 2) {
         tree.nearest(points.col(at[static_cast<std::size_t>(i)]).data(), count, found);
         const Spread<D> spread(points, found);
-        normals.col(i) = spread.solver.eigenvectors().col(0);
+        normals.col(i) = spread.eigen.vectors.col(0);
         if (spread.determined() || static_cast<Index>(found.size()) == points.cols()) break;
       }
     }

@@ -1,7 +1,5 @@
 #include "surface/rbf/cloud_geometry.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/linear_algebra.hpp"
 #include "core/parallel.hpp"
 #include "taut/core/error.hpp"
 
@@ -85,7 +84,7 @@ Index affine_rank(const Points& points, double tolerance) {
   const double size = centred.cwiseAbs().maxCoeff();
   if (!(size > 0)) return 0;
   const Eigen::MatrixXd moment = (centred / size) * (centred / size).transpose();
-  const Vector spread = Eigen::JacobiSVD<Eigen::MatrixXd>(moment).singularValues().cwiseSqrt();
+  const Vector spread = singular_values(moment).cwiseSqrt();
   // Squaring leaves half of the digits: spreads below 1e-8 of the largest cannot be told from none.
   return (spread.array() > std::max(tolerance, 3e-8) * spread(0)).count();
 }
@@ -126,13 +125,13 @@ double relative_noise(const Points& points, const Points& normals, const KdTree&
     std::erase_if(found, [&](const Neighbour& other) { return normals.col(other.index).dot(normal) <= 0; });
     const Index used = std::min(neighbours, static_cast<Index>(found.size()));
     if (used < 2 * unknowns) continue;
-    const Eigen::MatrixXd frame = Eigen::HouseholderQR<Eigen::MatrixXd>(normal).householderQ();
+    const Eigen::MatrixXd tangents = orthogonal_complement(normal);
     const double radius = std::sqrt(found[static_cast<std::size_t>(used - 1)].squared_distance);
     Eigen::MatrixXd terms(used, unknowns);
     Vector height(used);
     for (Index row = 0; row < used; ++row) {
       const Vector u = (points.col(found[static_cast<std::size_t>(row)].index) - points.col(i)) / radius;
-      const Vector t = frame.rightCols(m).transpose() * u;
+      const Vector t = tangents.transpose() * u;
       height(row) = normal.dot(u);
       terms(row, 0) = 1;
       terms.row(row).segment(1, m) = t.transpose();
@@ -140,7 +139,7 @@ double relative_noise(const Points& points, const Points& normals, const KdTree&
         for (Index b = 0; b <= a; ++b, ++column) terms(row, column) = t(a) * t(b);
       }
     }
-    const Vector fit = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(terms).solve(height);
+    const Vector fit = least_squares(terms, height);
     const double deviation = std::sqrt((terms * fit - height).squaredNorm() / static_cast<double>(used - unknowns));
     // radius = 1 here, so the spacing is that of `used` points in a unit ball.
     ratio(probe) = deviation / std::pow(unit_ball_volume(static_cast<double>(m)) / static_cast<double>(used),
