@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "curve/gauss_collocation.hpp"
+#include "curve/integrate_nodes.hpp"
 #include "curve/ray_field.hpp"
 
 namespace taut::detail {
@@ -26,23 +27,21 @@ struct RayState {
 /// runs through contiguous numbers.
 struct RayRows {
   using Square = GaussCollocation::Square;
-  Square once, twice, to_legendre;  ///< row i: weights of node i, of the i-th coefficient
-  Square check_once, check_twice;   ///< of the checks but the first, which is the start of the step
+  NodeWeights nodes;
+  NodeWeights checks;  ///< but the first, which is the start of the step
+  Square to_legendre;  ///< row i: weights of the i-th coefficient
   Eigen::Matrix<double, GaussCollocation::kChecks, GaussCollocation::kStages> check_value;
-  Eigen::Matrix<double, GaussCollocation::kStages, 1> node, check;
 
   [[nodiscard]] static const RayRows& tables() {
     static const RayRows rows = [] {
       const GaussCollocation& t = GaussCollocation::tables();
       constexpr int kStages = GaussCollocation::kStages;
-      return RayRows{.once = t.once.transpose(),
-                     .twice = t.twice.transpose(),
-                     .to_legendre = t.to_legendre.transpose(),
-                     .check_once = t.check_once.rightCols<kStages>().transpose(),
-                     .check_twice = t.check_twice.rightCols<kStages>().transpose(),
-                     .check_value = t.check_value.transpose(),
-                     .node = t.node.transpose(),
-                     .check = t.check.rightCols<kStages>().transpose()};
+      return RayRows{
+          .nodes = {t.once.transpose(), t.twice.transpose(), t.node.transpose()},
+          .checks = {t.check_once.rightCols<kStages>().transpose(), t.check_twice.rightCols<kStages>().transpose(),
+                     t.check.rightCols<kStages>().transpose()},
+          .to_legendre = t.to_legendre.transpose(),
+          .check_value = t.check_value.transpose()};
     }();
     return rows;
   }
@@ -151,7 +150,7 @@ class RayStep {
   /// The first guess: the last attempt's series, or, where that is carried too far, the acceleration at the start.
   void predict(const State& from, double ratio, double offset) {
     using Nodes = Eigen::Array<double, kStages, 1>;
-    const Nodes xi = 2 * (offset + rows_.node.array() * ratio) - 1;
+    const Nodes xi = 2 * (offset + rows_.nodes.at.array() * ratio) - 1;
     Eigen::Matrix<double, kStages, kStages> basis;
     basis.col(0).setOnes();
     basis.col(1) = xi;
@@ -183,17 +182,17 @@ class RayStep {
     return Outcome::regular;
   }
 
+  void integrate(const NodeWeights& weights, const State& from) {
+    integrate_nodes(weights, a_.cols(), h_, from.x.data(), from.v.data(), a_.data(), v_rows_.data(), x_rows_.data());
+  }
+
   Verdict settle(const State& from) {
     constexpr int kMostVisits = 40;
     double last_change = std::numeric_limits<double>::infinity();
     int stalled = 0;
     num_visits = 0;
     for (int visits = 0; visits < kMostVisits; ++visits) {
-      v_rows_.noalias() = h_ * rows_.once.lazyProduct(a_);
-      v_rows_.rowwise() += from.v.transpose();
-      x_rows_.noalias() = (h_ * h_) * rows_.twice.lazyProduct(a_);
-      x_rows_.noalias() += rows_.node.lazyProduct((h_ * from.v).transpose());
-      x_rows_.rowwise() += from.x.transpose();
+      integrate(rows_.nodes, from);
       ++num_visits;
       const Outcome outcome = visit();
       if (outcome == Outcome::not_finite) return Verdict::not_finite;
@@ -225,11 +224,7 @@ class RayStep {
   }
 
   Verdict check(const State& from) {
-    v_rows_.noalias() = h_ * rows_.check_once.lazyProduct(a_);
-    v_rows_.rowwise() += from.v.transpose();
-    x_rows_.noalias() = (h_ * h_) * rows_.check_twice.lazyProduct(a_);
-    x_rows_.noalias() += rows_.check.lazyProduct((h_ * from.v).transpose());
-    x_rows_.rowwise() += from.x.transpose();
+    integrate(rows_.checks, from);
     check_x_ = x_rows_.transpose();
     check_v_ = v_rows_.transpose();
     const Outcome outcome = checks_.evaluate(kStages, check_x_.data(), check_v_.data());

@@ -6,11 +6,17 @@
 // Where neighbouring rays meet (near a conjugate point, or at the source) e tends to 0 and alpha is ill determined, but
 // the distance is not: a miss `a` across the rays and the step da that would mend it change the distance by
 // a (d m12 / ds) da half / 2 at most. So the iteration ends when that product is small, whichever factor is.
+//
+// Most of the way is gone on the first terms of the series alone, at a third of the time. Where the map is even
+// (PatchFrame::even) they also tell that a point is not on the patch. Elsewhere they only give a better start: rays
+// that draw near each other meet a point twice, and which of the two an iteration finds hangs on its way there.
 
 #include "fan/exp_patch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "fan/panel_point.hpp"
 
@@ -28,10 +34,62 @@ constexpr int kQuickSteps = 8;
 constexpr double kEnough = 1e-13;
 /// A last step along the ray by this leaves its square, in units of the panel.
 constexpr double kClose = 1e-5;
+/// A last step by this turns the direction of arrival by as many radians or so: then it is asked for anew.
+constexpr double kTurned = 1e-11;
 
-}  // namespace
+/// How the first terms of a series are used. Compared with the whole series from the same starts for 5 million pairs of
+/// points and panels of eleven surfaces at tolerances of 1e-4 to 1e-13, no distance was another one, but for one in a
+/// thousand, shorter or longer, on folded panels of the ellipsoid 1:1:0.02 at 1e-4.
+struct SketchRule {
+  int most_steps = 6;
+  double most_off = 1e-4;  ///< of patch.sketch, panels' steps: coarser ones say too little
+  double settled = 1e-2;   ///< a last step by this leaves its square, times `quadratic`
+  double quadratic = 4;    ///< a panel is nearly linear: one half or so was seen
+  double slack = 2;        ///< of patch.sketch
+};
+constexpr SketchRule kSketch;
 
-bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, PatchHit& hit) {
+/// A solution on the first terms of a patch's series, and what it says of the point.
+struct Sketch {
+  enum class Verdict : unsigned char {
+    off,    // it lies beside the patch
+    near,   // here, or nearly
+    blank,  // the iteration does not settle: nothing is said
+  };
+  Verdict verdict = Verdict::blank;
+  double alpha = 0;
+  double beta = 0;
+};
+
+/// A point of the patch at (alpha, beta) lies within `patch.sketch` of where its first terms put it, and so does their
+/// solution within that, divided by how fast x goes.
+Sketch sketch_of(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta) {
+  if (patch.sketch > kSketch.most_off * patch.step) return {};
+  const double least = 1e-26 * patch.step * patch.step;
+  for (int i = 0; i < kSketch.most_steps; ++i) {
+    const PanelPoint p = panel_sketch(patch, alpha, beta);
+    const Eigen::Vector3d r = q - p.x;
+    const double ee = p.across.squaredNorm() + least;
+    const double tt = p.along.squaredNorm();
+    const double da = p.across.dot(r) / ee;
+    const double db = p.along.dot(r) / tt;
+    const bool settled = std::abs(da) < kSketch.settled && std::abs(db) < kSketch.settled;
+    alpha += std::clamp(da, -0.7, 0.7);
+    beta += std::clamp(db, -0.7, 0.7);
+    if (settled) {
+      const double left = kSketch.quadratic * (da * da + db * db);
+      const double slack = kSketch.slack * patch.sketch;
+      const bool off = std::abs(alpha) > 1 + patch.rim + left + slack / std::sqrt(ee) ||
+                       std::abs(beta) > 1 + kRim + left + slack / std::sqrt(tt);
+      return {off ? Sketch::Verdict::off : Sketch::Verdict::near, alpha, beta};
+    }
+    if (std::abs(alpha) > kAstray || std::abs(beta) > kAstray) break;
+  }
+  return {};
+}
+
+/// From (alpha, beta) on the whole series.
+bool invert_from(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, PatchHit& hit) {
   const double half_step = patch.step / 2;
   for (int i = 0; i < kMostSteps; ++i) {
     const PanelPoint p = panel_point(patch, alpha, beta);
@@ -58,7 +116,8 @@ bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, doubl
       if (rest.norm() > allowed) return false;
       hit.distance = patch.value + length;
       hit.angle = patch.angle + patch.half * (alpha + da);
-      hit.arrival = p.along / std::sqrt(tt);
+      const bool moved = std::abs(da) + std::abs(db) > kTurned;
+      hit.arrival = (moved ? panel_point(patch, alpha + da, beta + db).along : p.along).normalized();
       hit.error = patch.error;
       return true;
     }
@@ -71,17 +130,39 @@ bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, doubl
   return false;
 }
 
+}  // namespace
+
+bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, bool even, PatchHit& hit) {
+  const Sketch sketch = sketch_of(patch, q, alpha, beta);
+  if (sketch.verdict == Sketch::Verdict::off && even) return false;
+  if (sketch.verdict == Sketch::Verdict::near && invert_from(patch, q, sketch.alpha, sketch.beta, hit)) return true;
+  return invert_from(patch, q, alpha, beta, hit);
+}
+
 bool invert(const PatchFrame& frame, const ExpPatch& patch, const Eigen::Vector3d& q, PatchHit& hit) {
   if (!frame.bent) {
     const Eigen::Vector3d r = q - frame.centre;
-    return invert(patch, q, std::clamp(r.dot(frame.across), -1.0, 1.0), std::clamp(r.dot(frame.along), -1.0, 1.0), hit);
+    return invert(patch, q, std::clamp(r.dot(frame.across), -1.0, 1.0), std::clamp(r.dot(frame.along), -1.0, 1.0),
+                  frame.even, hit);
   }
-  // A caustic folds the panel: two geodesics of it, or more, may meet one point.
+  // A caustic folds the panel: two geodesics of it, or more, may meet one point. Most starts lead to few of them.
+  constexpr double kSame = 1e-4;  // of parameters: lengths differ by their square at a fold, and here not at all
+  std::array<Sketch, 8> met;
+  std::size_t count = 0;
   bool found = false;
   for (const double alpha : {-0.8, -0.3, 0.3, 0.8}) {
     for (const double beta : {-0.6, 0.6}) {
+      Sketch start = sketch_of(patch, q, alpha, beta);
+      if (start.verdict != Sketch::Verdict::near) start = {.alpha = alpha, .beta = beta};
+      const auto same = [&](const Sketch& other) {
+        return std::max(std::abs(other.alpha - start.alpha), std::abs(other.beta - start.beta)) < kSame;
+      };
+      if (std::any_of(met.begin(), met.begin() + static_cast<std::ptrdiff_t>(count), same)) continue;
+      met[count++] = start;
       PatchHit other;
-      if (!invert(patch, q, alpha, beta, other) || (found && other.distance >= hit.distance)) continue;
+      const bool meets = invert_from(patch, q, start.alpha, start.beta, other) ||
+                         (start.verdict == Sketch::Verdict::near && invert_from(patch, q, alpha, beta, other));
+      if (!meets || (found && other.distance >= hit.distance)) continue;
       hit = other;
       found = true;
     }

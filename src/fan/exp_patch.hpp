@@ -18,6 +18,7 @@ struct PatchFrame {
   double least_height, most_height;  ///< (q - centre) . normal of points on the patch
   double start;                      ///< least distance on it
   bool bent;                         ///< first order is no good guess everywhere
+  bool even;                         ///< the map goes like first order everywhere: it meets no point twice
 };
 
 /// A panel of the exponential map, (alpha, beta) in [-1, 1]^2 -> x: angle = middle + half alpha, arc length = start +
@@ -32,6 +33,7 @@ struct ExpPatch {
   double rim;         ///< what |alpha| may be beyond 1
   bool beside_curve;  ///< it begins at a curve: rays do not meet there
   bool astray;        ///< some of its rays have left the surface's domain, on it or before
+  double sketch;      ///< how far its first terms alone are off (sketch_error), model units
 };
 
 /// Where a patch's map meets a point.
@@ -43,8 +45,9 @@ struct PatchHit {
 };
 
 /// Solves x(alpha, beta) = q by Gauss-Newton from (alpha, beta); by Gauss' lemma its normal equations are diagonal.
-/// True where the point is on the patch (or by a hair beside it).
-[[nodiscard]] bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, PatchHit& hit);
+/// True where the point is on the patch (or by a hair beside it). `even`: as PatchFrame::even.
+[[nodiscard]] bool invert(const ExpPatch& patch, const Eigen::Vector3d& q, double alpha, double beta, bool even,
+                          PatchHit& hit);
 
 /// The same from the first-order guess; where that goes far astray, because rays meet on the patch, from several
 /// starts: the least distance. `frame` and `patch` belong together.

@@ -111,7 +111,8 @@ struct GeodesicFan::Impl {
     // Where the surface bends, the straight direction is not that of the ray: by more than a narrow strip is wide.
     constexpr double kMost = 0.6;  // radians: one and a half half-widths of the widest strips
     if (std::abs(alpha) * patch.half > kMost) return false;
-    return detail::invert(patch, q, std::clamp(alpha, -1.0, 1.0), std::min(1.0, 2 * r.norm() / patch.step - 1), hit);
+    const double beta = std::min(1.0, 2 * r.norm() / patch.step - 1);
+    return detail::invert(patch, q, std::clamp(alpha, -1.0, 1.0), beta, false, hit);
   }
 
   /// A shorter geodesic than `bound` meets x.

@@ -22,15 +22,14 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kGroup = 12;
 constexpr std::size_t kRows = 3 * PanelBasis::kRays;
-static_assert(kRows % kGroup == 0);
 
 /// Adds the four partial sums of a component.
 HWY_INLINE double fold(const double* sum) { return (sum[0] + sum[3]) + (sum[6] + sum[9]); }
 
-/// `out`: x, d x / d alpha, d x / d beta.
-void sum(const double* HWY_RESTRICT series, double alpha, double beta, double* HWY_RESTRICT out) {
-  constexpr std::size_t kAcross = PanelBasis::kRays;
-  constexpr std::size_t kAlong = PanelBasis::kSeries;
+/// `out`: x, d x / d alpha, d x / d beta, of the first terms across and along.
+template <std::size_t kAcross, std::size_t kAlong>
+HWY_INLINE void sum_terms(const double* HWY_RESTRICT series, double alpha, double beta, double* HWY_RESTRICT out) {
+  static_assert(3 * kAcross % kGroup == 0);
   const hn::CappedTag<double, 4> d;
   using Vec = hn::Vec<decltype(d)>;
   constexpr std::size_t kMostVectors = kGroup / hn::MaxLanes(d);
@@ -38,8 +37,8 @@ void sum(const double* HWY_RESTRICT series, double alpha, double beta, double* H
   double sb[kAlong];
   double ta[kAcross];
   double sa[kAcross];
-  chebyshev_slopes(beta, PanelBasis::kSeries, tb, sb);
-  chebyshev_slopes(alpha, PanelBasis::kRays, ta, sa);
+  chebyshev_slopes(beta, kAlong, tb, sb);
+  chebyshev_slopes(alpha, kAcross, ta, sa);
   double t[3 * kAcross];  // each three times, as the rows go
   double s[3 * kAcross];
   for (std::size_t m = 0; m < kAcross; ++m) {
@@ -55,7 +54,7 @@ void sum(const double* HWY_RESTRICT series, double alpha, double beta, double* H
   Vec sum_across[kMostVectors];
   Vec sum_along[kMostVectors];
   for (std::size_t v = 0; v < kMostVectors; ++v) sum_x[v] = sum_across[v] = sum_along[v] = hn::Zero(d);
-  for (std::size_t group = 0; group < kRows / kGroup; ++group) {
+  for (std::size_t group = 0; group < 3 * kAcross / kGroup; ++group) {
     const double* HWY_RESTRICT rows = series + group * kGroup;
     Vec value[kMostVectors];
     Vec slope[kMostVectors];
@@ -92,16 +91,48 @@ void sum(const double* HWY_RESTRICT series, double alpha, double beta, double* H
   }
 }
 
+void sum_all(const double* HWY_RESTRICT series, double alpha, double beta, double* HWY_RESTRICT out) {
+  sum_terms<PanelBasis::kRays, PanelBasis::kSeries>(series, alpha, beta, out);
+}
+
+void sum_first(const double* HWY_RESTRICT series, double alpha, double beta, double* HWY_RESTRICT out) {
+  sum_terms<kSketchAcross, kSketchAlong>(series, alpha, beta, out);
+}
+
 }  // namespace taut::detail::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace taut::detail {
-PanelPoint panel_point(const ExpPatch& patch, double alpha, double beta) {
-  double out[9];
-  TAUT_DISPATCH(sum)(patch.series.data(), alpha, beta, out);
+namespace {
+
+PanelPoint point_of(const double* out) {
   return {Eigen::Map<const Eigen::Vector3d>(out), Eigen::Map<const Eigen::Vector3d>(out + 3),
           Eigen::Map<const Eigen::Vector3d>(out + 6)};
+}
+
+}  // namespace
+
+PanelPoint panel_point(const ExpPatch& patch, double alpha, double beta) {
+  double out[9];
+  TAUT_DISPATCH(sum_all)(patch.series.data(), alpha, beta, out);
+  return point_of(out);
+}
+
+PanelPoint panel_sketch(const ExpPatch& patch, double alpha, double beta) {
+  double out[9];
+  TAUT_DISPATCH(sum_first)(patch.series.data(), alpha, beta, out);
+  return point_of(out);
+}
+
+double sketch_error(const ExpPatch& patch) {
+  double sum = 0;
+  for (int n = 0; n < PanelBasis::kSeries; ++n) {
+    for (int m = n < kSketchAlong ? kSketchAcross : 0; m < PanelBasis::kRays; ++m) {
+      sum += patch.series.col(n).segment<3>(3 * m).norm();
+    }
+  }
+  return sum;
 }
 
 }  // namespace taut::detail

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fan/panel_point.hpp"
+
 namespace taut::detail {
 namespace {
 
@@ -335,7 +337,9 @@ std::pair<PatchFrame, ExpPatch> StripStepper::patch(const RayStrip& strip) const
                  .source = static_cast<std::int32_t>(strip.source),
                  .rim = strip.rim,
                  .beside_curve = strip.length == 0 && strip.slope.abs().maxCoeff() == 0,
-                 .astray = strip.astray || !inside};
+                 .astray = strip.astray || !inside,
+                 .sketch = 0};
+  patch.sketch = sketch_error(patch);
   PatchFrame frame;
   frame.start = strip.distance();
   // x and its derivatives in the middle: T_n(0) = 1, 0, -1, 0, ..., T_n'(0) = 0, n, 0, -n, ...
@@ -390,9 +394,28 @@ std::pair<PatchFrame, ExpPatch> StripStepper::patch(const RayStrip& strip) const
   // Up to here Gauss-Newton arrives from the first-order guess; beyond (a caustic) it was seen to take another branch.
   constexpr double kStraight = 0.7;
   frame.bent = std::max(stray_alpha, stray_beta) > kStraight;
+  frame.even = goes_like_first_order(strip, frame);
   frame.most_alpha = 1.1 + 1.2 * stray_alpha;
   frame.most_beta = 1.1 + 1.2 * stray_beta;
   return {frame, patch};
+}
+
+/// The Jacobian of ((q - centre) . across, (q - centre) . along) by (alpha, beta), from the Jacobi fields, is so near
+/// the identity at all nodes that the map takes no two places to one.
+bool StripStepper::goes_like_first_order(const RayStrip& strip, const PatchFrame& frame) const {
+  constexpr double kMostOff = 0.6;  // below 1: nodes are samples
+  double most = 0;
+  for (int s = 0; s < kStages; ++s) {
+    for (int i = 0; i < kRays; ++i) {
+      const Eigen::Vector3d v = v_.col(s).segment<3>(3 * i);
+      const Eigen::Vector3d n = normals_.col(s).segment<3>(3 * i);
+      const Eigen::Vector3d across = strip.half * fields_(i, s) * n.cross(v);
+      const Eigen::Vector3d along = step_ / 2 * v;
+      most = std::max({most, std::abs(across.dot(frame.across) - 1) + std::abs(along.dot(frame.across)),
+                       std::abs(along.dot(frame.along) - 1) + std::abs(across.dot(frame.along))});
+    }
+  }
+  return most < kMostOff;
 }
 
 void StripStepper::arrive(RayStrip& strip) const {

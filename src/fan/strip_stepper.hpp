@@ -66,6 +66,7 @@ class StripStepper {
   void follow_fields(const RayStrip& strip);
   bool check(const RayStrip& strip);
   void look_at_domain();
+  [[nodiscard]] bool goes_like_first_order(const RayStrip& strip, const PatchFrame& frame) const;
 
   std::unique_ptr<Evaluator> evaluator_;
   std::unique_ptr<Evaluator> domain_;  // null: the surface has no border

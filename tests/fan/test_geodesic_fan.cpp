@@ -321,6 +321,16 @@ TEST(PanelPoint, SumsTheSeriesInAnyLanes) {
       EXPECT_EQ(same.across, p.across);
       EXPECT_EQ(same.along, p.along);
     }
+    detail::use_instruction_set(detail::InstructionSet::baseline);
+    const detail::PanelPoint sketch = detail::panel_sketch(patch, alpha, beta);
+    EXPECT_LT((sketch.x - p.x).norm(), detail::sketch_error(patch));
+    EXPECT_GT((sketch.x - p.x).norm(), 0);
+    for (const auto set :
+         {detail::InstructionSet::sse4, detail::InstructionSet::avx2, detail::InstructionSet::avx512}) {
+      if (!detail::has_instruction_set(set)) continue;
+      detail::use_instruction_set(set);
+      EXPECT_EQ(detail::panel_sketch(patch, alpha, beta).x, sketch.x);
+    }
   }
   detail::use_instruction_set(best);
 }
