@@ -15,12 +15,13 @@
 #include "taut/io/output_file.hpp"
 
 // The format, all numbers little-endian, a real as its 64 IEEE bits, an integer in 64 bits:
-//   "taut model 3\n"
+//   "taut model 4\n"
 //   kind (0 dense, 1 local)
 //   dense: kernel (0 cubic, 1 quintic)
 //          centres, weights, polynomial, origin: each rows, columns, then the entries column by column
 //          scale, support radius
-//   local: centres, radii, coefficients, support, as above
+//   local: centres, radii, coefficients, support, places between (points, normals, radius), as above
+//          flatness
 //   samples: points, normals as above, faces with integers
 //   report: of a dense fit five integers and ten reals, of a local one five integers and five reals
 //   checksum: FNV-1a (64 bit) of everything before it
@@ -29,7 +30,7 @@ namespace taut {
 namespace {
 
 constexpr std::string_view kMagic = "taut model ";
-constexpr std::string_view kVersion = "3\n";
+constexpr std::string_view kVersion = "4\n";
 
 std::uint64_t checksum(std::string_view bytes) {
   std::uint64_t hash = 0xCBF29CE484222325ULL;
@@ -73,7 +74,7 @@ class ModelReader {
     rest_.remove_prefix(kMagic.size());
     if (!rest_.starts_with(kVersion)) {
       file_.fail("has model version " + detail::quote(rest_.substr(0, rest_.find('\n'))) +
-                 ", this program reads version 3; fit the cloud again");
+                 ", this program reads version 4; fit the cloud again");
     }
     rest_.remove_prefix(kVersion.size());
     constexpr std::size_t kWord = 8;
@@ -149,12 +150,20 @@ bool sound(const RbfModel& model) {
          sound_samples(model.samples, d);
 }
 
+bool sound(const SupportPlaces& places, Index d) {
+  const Index n = places.radius.size();
+  return places.points.rows() == (n > 0 ? d : places.points.rows()) && places.points.cols() == n &&
+         places.normals.rows() == places.points.rows() && places.normals.cols() == n && places.points.allFinite() &&
+         places.normals.allFinite() && places.radius.allFinite();
+}
+
 bool sound(const LocalFitModel& model) {
   const Index d = model.centres.rows();
   const Index m = model.centres.cols();
   return (d == 2 || d == 3) && m > 0 && model.radii.size() == m && model.coefficients.cols() == m &&
          model.centres.allFinite() && model.coefficients.allFinite() && model.radii.allFinite() &&
          model.radii.minCoeff() > 0 && model.support.size() == model.samples.size() && model.support.allFinite() &&
+         sound(model.between, d) && model.flatness >= 1 && std::isfinite(model.flatness) &&
          sound_samples(model.samples, d) && model.samples.size() > 0;
 }
 
@@ -220,6 +229,10 @@ void write(ModelWriter& out, const LocalFitModel& model) {
   out.matrix(model.radii);
   out.matrix(model.coefficients);
   out.matrix(model.support);
+  out.matrix(model.between.points);
+  out.matrix(model.between.normals);
+  out.matrix(model.between.radius);
+  out.real(model.flatness);
   write_samples(out, model.samples);
   write_report(out, model.report, model.report.samples_per_patch);
 }
@@ -246,6 +259,10 @@ LocalFitModel read_local(ModelReader& in) {
   model.radii = in.matrix<Vector>();
   model.coefficients = in.matrix<Points>();
   model.support = in.matrix<Vector>();
+  model.between.points = in.matrix<Points>();
+  model.between.normals = in.matrix<Points>();
+  model.between.radius = in.matrix<Vector>();
+  model.flatness = in.real();
   model.samples = read_samples(in);
   read_report(in, model.report, model.report.samples_per_patch);
   return model;

@@ -64,13 +64,19 @@ TEST(ModelFile, GivesBackAModelInFourDimensions) {
 
 TEST(ModelFile, GivesBackALocalFit) {
   const test::TempFolder folder;
-  const LocalFitModel model = fit_local(test::torus_cloud(300));
+  LocalFitModel model = fit_local(test::torus_cloud(300));
+  model.between = {model.samples.points.leftCols(2), model.samples.normals.leftCols(2), Vector::Constant(2, 0.1)};
+  model.flatness = 3;
   write_model(folder.path() / "s.taut", model);
   const LocalFitModel read = std::get<LocalFitModel>(read_model(folder.path() / "s.taut"));
   EXPECT_EQ(read.centres, model.centres);
   EXPECT_EQ(read.radii, model.radii);
   EXPECT_EQ(read.coefficients, model.coefficients);
   EXPECT_EQ(read.support, model.support);
+  EXPECT_EQ(read.between.points, model.between.points);
+  EXPECT_EQ(read.between.normals, model.between.normals);
+  EXPECT_EQ(read.between.radius, model.between.radius);
+  EXPECT_EQ(read.flatness, model.flatness);
   EXPECT_EQ(read.samples.points, model.samples.points);
   EXPECT_EQ(read.samples.normals, model.samples.normals);
   EXPECT_EQ(read.report.num_samples, model.report.num_samples);
@@ -116,7 +122,7 @@ TEST(ModelFile, SaysWhatIsWrong) {
   };
   EXPECT_NE(message("ply\nformat ascii 1.0\n").find("is not a model"), std::string::npos);
   EXPECT_NE(message("taut model 1\nsomething").find("version '1'"), std::string::npos);
-  EXPECT_NE(message("taut model 3\nabcdefghijkl").find("checksum"), std::string::npos);
+  EXPECT_NE(message("taut model 4\nabcdefghijkl").find("checksum"), std::string::npos);
   EXPECT_THROW((void)read_model(folder.path() / "missing.taut"), IoError);
   EXPECT_THROW((void)read_model(folder.path()), IoError);
   EXPECT_THROW(write_model(folder.path() / "no such folder" / "s.taut", RbfModel{}), IoError);

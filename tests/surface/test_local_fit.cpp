@@ -318,5 +318,58 @@ TEST(LocalFit, TheDomainIsFlat) {
   }
 }
 
+/// A torus (1, 0.3) of `around` x `across` vertices, two triangles for each.
+PointCloud torus_mesh(int around, int across) {
+  PointCloud cloud = test::empty_cloud(3, around * across);
+  cloud.normals.resize(3, 0);
+  cloud.faces.resize(3, 2 * around * across);
+  for (int i = 0; i < around; ++i) {
+    for (int j = 0; j < across; ++j) {
+      const double a = 2 * std::numbers::pi * i / around;
+      const double b = 2 * std::numbers::pi * j / across;
+      const double r = 1 + 0.3 * std::cos(b);
+      const int at = i * across + j;
+      cloud.points.col(at) << r * std::cos(a), r * std::sin(a), 0.3 * std::sin(b);
+      const int next = (i + 1) % around * across + j;
+      const int up = i * across + (j + 1) % across;
+      const int beyond = (i + 1) % around * across + (j + 1) % across;
+      cloud.faces.col(2 * at) << at, next, up;
+      cloud.faces.col(2 * at + 1) << next, beyond, up;
+    }
+  }
+  return cloud;
+}
+
+/// Eight vertices round a tube leave faces that turn by 45 degrees: between them the surface has places of its own.
+TEST(LocalFit, OfAMeshReachesOverItsFacesAndNoFarther) {
+  for (const int across : {8, 24}) {
+    const PointCloud mesh = torus_mesh(80, across);
+    const LocalFitModel model = fit_local(mesh);
+    EXPECT_EQ(model.between.radius.size() > 0, across == 8);
+    const Surface surface = make_surface(std::make_shared<const LocalFitModel>(model));
+    Points middles(3, 4 * mesh.faces.cols());
+    for (Index f = 0; f < mesh.faces.cols(); ++f) {
+      const Eigen::Matrix3d corners = mesh.points(Eigen::all, mesh.faces.col(f));
+      middles.col(4 * f) = corners.rowwise().mean();
+      for (int i = 0; i < 3; ++i) middles.col(4 * f + 1 + i) = (corners.col(i) + corners.col((i + 1) % 3)) / 2;
+    }
+    const auto evaluator = surface.make_evaluator();
+    ASSERT_TRUE(project_to_surface(*evaluator, 3, 1, middles).all());
+    EXPECT_TRUE(surface.inside_domain(middles).all());
+    for (Index i = 0; i < mesh.size(); i += 7) {
+      // 0.08 off a tube of 0.3: within a third of what the vertices' balls are along the sheet.
+      const Vector off = mesh.points.col(i) + 0.08 * model.samples.normals.col(i);
+      EXPECT_FALSE(surface.inside_domain(off)(0));
+    }
+  }
+}
+
+/// Of a cloud the ends are as ever.
+TEST(LocalFit, OfACloudHasNoPlacesBetween) {
+  const LocalFitModel model = fit_local(test::torus_cloud(3000));
+  EXPECT_EQ(model.between.radius.size(), 0);
+  EXPECT_EQ(model.flatness, 2);
+}
+
 }  // namespace
 }  // namespace taut

@@ -106,6 +106,13 @@ struct LocalFitReport {
   MergedSheets merged_sheets;  ///< `at` counts in the cloud
 };
 
+/// Places of a surface that speak for it as samples do, each as far as its radius. Model units.
+struct SupportPlaces {
+  Points points;   ///< d x n
+  Points normals;  ///< d x n, unit
+  Vector radius;   ///< n
+};
+
 /// A surface in R^2 or R^3 put together of many small pieces: polynomials of degree three, each fitted to the samples
 /// in one ball, blended where the balls overlap (a partition of unity). What `fit_local` makes and a `.taut` file
 /// holds.
@@ -117,6 +124,9 @@ struct LocalFitModel {
   Points coefficients;
   /// n: how far around each sample there is surface, model units.
   Vector support;
+  /// Of a mesh: places of the surface over those of its faces that the samples do not cover, being large or arched.
+  SupportPlaces between;
+  double flatness = 1;  ///< >= 1: across the sheet there is surface so many times less far
   /// The whole cloud in the order it came (so that the 17th sample stays the 17th), with unit normals.
   PointCloud samples;
   LocalFitReport report;

@@ -12,6 +12,7 @@
 #include "surface/local_fit/blended_function.hpp"
 #include "surface/local_fit/patch_cover.hpp"
 #include "surface/local_fit/patch_solve.hpp"
+#include "surface/local_fit/places_between.hpp"
 #include "surface/local_fit/support_radii.hpp"
 #include "surface/normals/merged_sheets.hpp"
 #include "surface/rbf/cloud_geometry.hpp"
@@ -25,7 +26,8 @@
 //   2. how many samples a patch should hold, by leave-one-out cross-validation on patches spread over the cloud;
 //   3. balls that cover the samples, thinned greedily;
 //   4. in each ball the cubic that fits samples and normals best (Hermite least squares).
-// The balls depend on the cloud alone and each patch on its ball alone, so that threads change nothing.
+// A mesh says more than its vertices: where its faces are large or arched, places over them say how far the surface
+// reaches, too. The balls depend on the cloud alone and each patch on its ball alone, so that threads change nothing.
 
 namespace taut {
 namespace {
@@ -38,6 +40,8 @@ using detail::OrientedSamples;
 /// A patch of radius R flattens ripples of wavelength R / kRadiusPerWavelength to half (measured by a test).
 constexpr double kRadiusPerWavelength = 1.0;
 constexpr double kBytesPerSample = 1200;
+/// A point of a triangle is no farther than 1 / sqrt(3) = 0.58 of its longest edge from a corner.
+constexpr double kOfEdge = 0.6;
 
 void require_valid(const PointCloud& cloud, const LocalFitOptions& options) {
   const auto require = [](bool good, const char* what, double value) {
@@ -62,16 +66,23 @@ void require_memory(Index num_samples, const Context& context) {
                     megabytes(limit) + " it may take: thin the cloud");
 }
 
+/// What patches are fitted to, and how far each sample's should speak.
+struct FittedSamples {
+  OrientedSamples samples;
+  const KdTree& tree;
+  const Vector& spacing;
+  const Vector& reach;
+};
+
 /// Patches at a rim, and where a mesh is coarse, are so large that the surface is theirs as far as it goes.
-void wish_for_rims(OrientedSamples samples, const KdTree& tree, const Vector& spacing, const Vector& support,
-                   detail::BallWishes& wishes, const Context& context) {
-  constexpr double kBeyondSupport = 1.15;
+void wish_for_rims(const FittedSamples& fitted, detail::BallWishes& wishes, const Context& context) {
+  constexpr double kBeyondReach = 1.15;
   constexpr double kCoarse = 3;  // spacings
-  wishes.own = detail::find_rim(samples, tree, context);
-  for (Index i = 0; i < support.size(); ++i) {
+  wishes.own = detail::find_rim(fitted.samples, fitted.tree, context);
+  for (Index i = 0; i < fitted.reach.size(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (support(i) > kCoarse * spacing(i)) wishes.own[at] = true;
-    if (wishes.own[at]) wishes.radius(i) = std::max(wishes.radius(i), kBeyondSupport * support(i));
+    if (fitted.reach(i) > kCoarse * fitted.spacing(i)) wishes.own[at] = true;
+    if (wishes.own[at]) wishes.radius(i) = std::max(wishes.radius(i), kBeyondReach * fitted.reach(i));
   }
 }
 
@@ -120,6 +131,21 @@ Index fit_patches(OrientedSamples samples, const KdTree& tree, const std::vector
   return static_cast<Index>(detail::quantile(num_samples, 0.5));
 }
 
+/// Steps 2 to 4.
+void fit_to(const FittedSamples& fitted, bool by_size, double least_radius, LocalFitModel& model,
+            const Context& context) {
+  const Points& points = fitted.samples.points;
+  const Index d = points.rows();
+  detail::BallWishes wishes;
+  wishes.samples = by_size ? std::vector<Index>(static_cast<std::size_t>(points.cols()), detail::fewest_samples(d))
+                           : detail::samples_by_cross_validation(fitted.samples, fitted.tree, context);
+  wishes.radius = Vector::Constant(points.cols(), least_radius);
+  wish_for_rims(fitted, wishes, context);
+  const std::vector<Ball> balls = detail::cover(points, fitted.tree, wishes, context);
+  model.report.samples_per_patch = d == 2 ? fit_patches<2>(fitted.samples, fitted.tree, balls, model, context)
+                                          : fit_patches<3>(fitted.samples, fitted.tree, balls, model, context);
+}
+
 /// How far the surface stands off the samples; `original`: which sample of the cloud each is.
 void measure_residual(const Points& points, const std::vector<Index>& original, const ImplicitFunction& function,
                       LocalFitReport& report, const Context& context) {
@@ -156,22 +182,25 @@ LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options,
   const Index n = samples.points.cols();
 
   const Vector spacing = detail::local_spacing(samples.points, tree, context);
-  const Vector support = options.support_radius > 0
-                             ? Vector(Vector::Constant(n, options.support_radius))
-                             : detail::support_radii(samples, tree, spacing, cloud.faces, merged.merged_to, context);
+  const bool ends_chosen = !(options.support_radius > 0);
+  Vector reach = ends_chosen ? detail::support_radii(samples, tree, spacing, context)
+                             : Vector(Vector::Constant(n, options.support_radius));
+  Vector support = reach;
+  const detail::FacedSamples mesh{samples, cloud.faces, merged.merged_to};
+  const bool of_mesh = ends_chosen && cloud.faces.cols() > 0;
+  model.flatness = of_mesh ? detail::kFlatnessOfMesh : detail::kFlatnessOfCloud;
+  if (of_mesh) {
+    support = detail::support_of_vertices(mesh, reach);
+    // Over a mesh's faces patches speak as well, whatever it takes to cover them.
+    reach = reach.cwiseMax(kOfEdge * detail::longest_edges(mesh));
+  }
   context.check_cancelled();
 
   // Meshes are taken at their word: what looks like noise on a coarse one is unresolved shape.
   const bool by_size = options.smoothing.has_value() || cloud.faces.cols() > 0;
-  detail::BallWishes wishes;
-  wishes.samples = by_size ? std::vector<Index>(static_cast<std::size_t>(n), detail::fewest_samples(cloud.dim()))
-                           : detail::samples_by_cross_validation(samples, tree, context);
-  wishes.radius = Vector::Constant(n, kRadiusPerWavelength * options.smoothing.value_or(0));
-  wish_for_rims(samples, tree, spacing, support, wishes, context);
-  const std::vector<Ball> balls = detail::cover(samples.points, tree, wishes, context);
+  const double least_radius = kRadiusPerWavelength * options.smoothing.value_or(0);
   LocalFitReport& report = model.report;
-  report.samples_per_patch = cloud.dim() == 2 ? fit_patches<2>(samples, tree, balls, model, context)
-                                              : fit_patches<3>(samples, tree, balls, model, context);
+  fit_to({samples, tree, spacing, reach}, by_size, least_radius, model, context);
   model.support.resize(cloud.size());
   for (Index i = 0; i < cloud.size(); ++i) model.support(i) = support(merged.merged_to[static_cast<std::size_t>(i)]);
   report.num_samples = n;
@@ -179,6 +208,7 @@ LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options,
   report.noise =
       by_size && !options.smoothing ? 0 : report.spacing * detail::relative_noise(samples.points, normals, tree);
   const std::shared_ptr<const ImplicitFunction> function = detail::make_blended_function(model);
+  if (of_mesh) model.between = detail::places_between(mesh, support, *function, context);
   measure_residual(samples.points, merged.merged_from, *function, report, context);
   report.merged_sheets =
       detail::find_merged_sheets(samples.points, normals, tree, *function, cloud.faces.cols() > 0, context);
