@@ -34,8 +34,8 @@ using Axes = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMaj
 /// They themselves at a place t (m).
 [[nodiscard]] TermVector quadric_terms(const VectorIn& place);
 
-/// The coefficients c of the least sum over the samples of (value - c . terms)^2 + kRidge |c|^2. `terms`: m x n, m at
-/// most kMostTerms.
+/// The coefficients c of the least sum over the samples of (value - c . terms)^2 + kRidge |c|^2, so n times the ridge.
+/// `terms`: m x n, m at most kMostTerms.
 [[nodiscard]] TermVector fit_terms(const PointsIn& terms, const Eigen::Ref<const Eigen::RowVectorXd>& values);
 
 /// Where samples in rows leave a term open: far below what noise or shape asks for, far above rounding.
