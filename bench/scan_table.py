@@ -3,12 +3,12 @@
 
     scan_table.py --taut build/release/taut --work FOLDER [--shapes] FILE ...
 
-One row a file: `taut fit` to a model, `taut info` on it, a first path between two random samples, further pairs one by
-one, a field, a mesh. Columns: points; seconds of the fit; how far the surface stands off the samples (rms, most);
+One row a file: `taut fit` to a model, `taut info` on it, a first path between two random samples, a batch of further
+pairs, a field, a mesh. Columns: points; seconds of the fit; how far the surface stands off the samples (rms, most);
 components and Euler number as `taut info` counts them and as the triangles of the file say; seconds of the first path
-(the model read, cells, march, correction) and of a further pair (a batch, its table and cells included, by the pair); of
-the field from one sample and of the display mesh; the most memory any of them took. Seconds are of the processor, all
-threads together, by the operating system. With --shapes the fit and the counts alone.
+(the model read, cells, march, correction); milliseconds of a further pair (a batch, its cells included, by the pair);
+seconds of the field from one sample and of the display mesh; the most memory the fit took. Seconds are of the
+processor, all threads together, by the operating system. With --shapes the fit and the counts alone.
 
 Every command is stopped after --limit seconds of the clock, and the table says so.
 """
@@ -211,7 +211,8 @@ def memory_of(command, limit):
         "import resource, subprocess, sys; subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, "
         "stderr=subprocess.DEVNULL); print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
     )
-    done = subprocess.run([sys.executable, "-c", code, *map(str, command)], capture_output=True, text=True, timeout=limit)
+    whole = [sys.executable, "-c", code, *map(str, command)]
+    done = subprocess.run(whole, capture_output=True, text=True, timeout=limit, check=False)
     return int(done.stdout) / 1024
 
 

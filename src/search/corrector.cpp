@@ -36,6 +36,11 @@ bool is_geodesic(const Geodesic& geodesic) {
          (geodesic.status == Status::rank_deficient && geodesic.length_error <= kFar * geodesic.length);
 }
 
+/// One that has come to rest beyond the domain.
+bool is_beyond(const Geodesic& geodesic) {
+  return geodesic.status == Status::left_domain && std::isfinite(geodesic.length_error);
+}
+
 /// Is it a curve between these ends, and no shorter than their distance. Whatever else goes wrong, no other leaves here
 /// as a path.
 bool joins(const Geodesic& geodesic, const VectorIn& p, const VectorIn& q) {
@@ -171,7 +176,8 @@ Corrector::Corrected Corrector::shorten(const Choice& choice, const FlowLattice&
       const bool begun = choice.rough.num_elements() > 0;
       if (begun) geodesic = newton(worker).refine(choice.rough, context_);
       // What three digits took for a geodesic may be none: then from the start itself.
-      if (!begun || !is_geodesic(geodesic)) geodesic = newton(worker).solve(start, context_);
+      const bool at_rest = begun && (is_geodesic(geodesic) || is_beyond(geodesic));
+      if (!at_rest) geodesic = newton(worker).solve(start, context_);
       break;
     }
     case CorrectionMethod::flow: {
@@ -222,11 +228,15 @@ std::vector<Corrector::Choice> Corrector::choose(const Starts& given) {
       [&](std::size_t j) {
         const StartPath& start = starts[j];
         if (take(start, geodesics[j])) return;
+        NewtonResult& curve = geodesics[j];
         // What the curve may yet come to, at least, if it came to rest.
-        const bool at_rest = std::isfinite(geodesics[j].length_error);
-        const double at_least = at_rest ? geodesics[j].length - geodesics[j].length_error : start.length;
-        // Kept, and tried once more to the full tolerance.
-        choices.push_back({std::min(at_least, start.length / (1 + given.error)), start.points, {}});
+        const bool at_rest = std::isfinite(curve.length_error);
+        const double at_least = at_rest ? curve.length - curve.length_error : start.length;
+        // Beyond the domain: within, this start leads to something longer, if anything. Else it is kept as it is, and
+        // tried once more to the full tolerance.
+        const bool beyond = is_beyond(curve);
+        choices.push_back({beyond ? at_least : std::min(at_least, start.length / (1 + given.error)), start.points,
+                           beyond ? std::move(curve.curve) : SpectralCurve{}});
       });
   std::vector<PathCandidate> known;
   double shortest = std::numeric_limits<double>::infinity();

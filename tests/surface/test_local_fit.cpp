@@ -346,6 +346,11 @@ TEST(LocalFit, OfAMeshReachesOverItsFacesAndNoFarther) {
     const PointCloud mesh = torus_mesh(80, across);
     const LocalFitModel model = fit_local(mesh);
     EXPECT_EQ(model.between.radius.size() > 0, across == 8);
+    Context serial;
+    serial.threads = 1;
+    const LocalFitModel again = fit_local(mesh, {}, serial);
+    EXPECT_EQ(again.between.points, model.between.points);
+    EXPECT_EQ(again.between.radius, model.between.radius);
     const Surface surface = make_surface(std::make_shared<const LocalFitModel>(model));
     Points middles(3, 4 * mesh.faces.cols());
     for (Index f = 0; f < mesh.faces.cols(); ++f) {

@@ -187,12 +187,14 @@ LocalFitModel fit_local(const PointCloud& cloud, const LocalFitOptions& options,
                              : Vector(Vector::Constant(n, options.support_radius));
   Vector support = reach;
   const detail::FacedSamples mesh{samples, cloud.faces, merged.merged_to};
-  const bool of_mesh = ends_chosen && cloud.faces.cols() > 0;
+  const bool faced = ends_chosen && cloud.faces.cols() > 0;
+  // A smoothed surface may leave the vertices by more than they reach across.
+  const bool of_mesh = faced && !(options.smoothing.value_or(0) > 0);
   model.flatness = of_mesh ? detail::kFlatnessOfMesh : detail::kFlatnessOfCloud;
-  if (of_mesh) {
-    support = detail::support_of_vertices(mesh, reach);
-    // Over a mesh's faces patches speak as well, whatever it takes to cover them.
+  if (faced) {
+    // Over a mesh's faces patches speak, whatever it takes to cover them.
     reach = reach.cwiseMax(kOfEdge * detail::longest_edges(mesh));
+    support = of_mesh ? detail::support_of_vertices(mesh, support) : reach;
   }
   context.check_cancelled();
 

@@ -23,6 +23,12 @@ StabbedBalls::StabbedBalls(const Points& centres, Vector radius)
     : centres_(centres), radius_(std::move(radius)), order_(static_cast<std::size_t>(centres.cols())) {
   std::iota(order_.begin(), order_.end(), Index{0});
   if (!order_.empty()) (void)grow(0, centres.cols());
+  ordered_ = centres_(Eigen::all, order_);
+  reach2_.resize(centres.cols());
+  for (Index k = 0; k < centres.cols(); ++k) {
+    const double r = radius_(order_[static_cast<std::size_t>(k)]);
+    reach2_(k) = kHair * r * r;
+  }
 }
 
 Index StabbedBalls::grow(Index first, Index last) {
@@ -55,8 +61,9 @@ Index StabbedBalls::grow(Index first, Index last) {
   return node;
 }
 
+template <int D>
 double StabbedBalls::squared_to_box(Index node, const double* lower, const double* upper) const {
-  const Index d = centres_.rows();
+  const Index d = D > 0 ? D : centres_.rows();
   const double* corner = corners_.data() + 2 * d * node;
   double sum = 0;
   for (Index a = 0; a < d; ++a) {
@@ -66,10 +73,14 @@ double StabbedBalls::squared_to_box(Index node, const double* lower, const doubl
   return sum;
 }
 
-double StabbedBalls::squared_to(Index i, const double* lower, const double* upper) const {
+/// From the k-th centre in the order of the leaves.
+template <int D>
+double StabbedBalls::squared_to(Index k, const double* lower, const double* upper) const {
+  const Index d = D > 0 ? D : centres_.rows();
+  const double* const x = ordered_.data() + d * k;
   double sum = 0;
-  for (Index a = 0; a < centres_.rows(); ++a) {
-    const double off = std::max({centres_(a, i) - upper[a], lower[a] - centres_(a, i), 0.0});
+  for (Index a = 0; a < d; ++a) {
+    const double off = std::max({x[a] - upper[a], lower[a] - x[a], 0.0});
     sum += off * off;
   }
   return sum;
@@ -80,27 +91,35 @@ void StabbedBalls::stabbed(const double* x, std::vector<Index>& out) const {
 }
 
 bool StabbedBalls::near_box(const double* lower, const double* upper, std::size_t most, std::vector<Index>& out) const {
+  return centres_.rows() == 3 ? near_box_in<3>(lower, upper, most, out) : near_box_in<0>(lower, upper, most, out);
+}
+
+template <int D>
+bool StabbedBalls::near_box_in(const double* lower, const double* upper, std::size_t most,
+                               std::vector<Index>& out) const {
   out.clear();
   for (Index a = 0; a < centres_.rows(); ++a) {
     if (std::isnan(lower[a]) || std::isnan(upper[a])) return true;
   }
+  const auto reached = [&](Index node) {
+    const double most_radius = nodes_[static_cast<std::size_t>(node)].most;
+    return !(squared_to_box<D>(node, lower, upper) > kHair * most_radius * most_radius);
+  };
   std::array<Index, kDeepest> open{};
   std::size_t count = 0;
-  if (!nodes_.empty()) open[count++] = 0;
+  if (!nodes_.empty() && reached(0)) open[count++] = 0;
   while (count > 0) {
     const Index at = open[--count];
     const Node& node = nodes_[static_cast<std::size_t>(at)];
-    if (squared_to_box(at, lower, upper) > kHair * node.most * node.most) continue;
     if (node.right >= 0) {
-      open[count++] = node.right;
-      open[count++] = at + 1;
+      if (reached(node.right)) open[count++] = node.right;
+      if (reached(at + 1)) open[count++] = at + 1;
       continue;
     }
     for (Index k = node.first; k < node.last; ++k) {
-      const Index i = order_[static_cast<std::size_t>(k)];
-      if (squared_to(i, lower, upper) > kHair * radius_(i) * radius_(i)) continue;
+      if (squared_to<D>(k, lower, upper) > reach2_(k)) continue;
       if (out.size() == most) return false;
-      out.push_back(i);
+      out.push_back(order_[static_cast<std::size_t>(k)]);
     }
   }
   return true;
@@ -115,14 +134,14 @@ Index StabbedBalls::nearest(const double* x) const {
   };
   std::array<Open, kDeepest> open{};
   std::size_t count = 0;
-  if (!nodes_.empty()) open[count++] = {0, squared_to_box(0, x, x)};
+  if (!nodes_.empty()) open[count++] = {0, squared_to_box<0>(0, x, x)};
   while (count > 0) {
     const Open next = open[--count];
     if (!(next.squared <= least)) continue;  // for NaN, too
     const Node& node = nodes_[static_cast<std::size_t>(next.node)];
     if (node.right >= 0) {
-      Open near{next.node + 1, squared_to_box(next.node + 1, x, x)};
-      Open far{node.right, squared_to_box(node.right, x, x)};
+      Open near{next.node + 1, squared_to_box<0>(next.node + 1, x, x)};
+      Open far{node.right, squared_to_box<0>(node.right, x, x)};
       if (far.squared < near.squared) std::swap(near, far);
       open[count++] = far;
       open[count++] = near;
@@ -130,7 +149,7 @@ Index StabbedBalls::nearest(const double* x) const {
     }
     for (Index k = node.first; k < node.last; ++k) {
       const Index i = order_[static_cast<std::size_t>(k)];
-      const double squared = squared_to(i, x, x);
+      const double squared = squared_to<0>(k, x, x);
       if (squared < least || (squared == least && i < best)) {
         least = squared;
         best = i;

@@ -32,12 +32,20 @@ class StabbedBalls {
     double most = 0;   // the largest radius
   };
   Index grow(Index first, Index last);
+  // D: the dimension, 0 = whatever it is.
+  template <int D>
+  [[nodiscard]] bool near_box_in(const double* lower, const double* upper, std::size_t most,
+                                 std::vector<Index>& out) const;
+  template <int D>
   [[nodiscard]] double squared_to_box(Index node, const double* lower, const double* upper) const;
-  [[nodiscard]] double squared_to(Index i, const double* lower, const double* upper) const;
+  template <int D>
+  [[nodiscard]] double squared_to(Index k, const double* lower, const double* upper) const;
 
   const Points& centres_;
   Vector radius_;
   std::vector<Index> order_;
+  Points ordered_;  // the centres in that order, and how far they reach, squared: leaves read them in a row
+  Vector reach2_;
   std::vector<Node> nodes_;
   std::vector<double> corners_;  // of a node's box: lower d, upper d
 };

@@ -153,10 +153,11 @@ class SupportEvaluator : public Evaluator {
   }
 
   double at(const double* x, bool slopes, bool bends) {
+    s_.balls.stabbed(x, found_);
+    if (dim_ == 3 && !bends) return at_in_space(x, slopes);
     double sum = 0;
     gradient_.setZero();
     hessian_.setZero();
-    s_.balls.stabbed(x, found_);
     for (const Index i : found_) {
       const double per_rho2 = 1 / (s_.rho(i) * s_.rho(i));
       const double rest = 1 - look(i, x) * per_rho2;
@@ -177,6 +178,33 @@ class SupportEvaluator : public Evaluator {
       hessian_ = s_.unit * (slope * hessian_ - 0.75 * slope / sum * gradient_ * gradient_.transpose()).eval();
     }
     gradient_ *= s_.unit * slope;
+    return s_.unit * (root - kLevel);
+  }
+
+  /// The same operations in the same order in space, without second derivatives: most questions are of that kind.
+  double at_in_space(const double* x, bool slopes) {
+    double sum = 0;
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d at(x[0], x[1], x[2]);
+    for (const Index i : found_) {
+      Eigen::Vector3d away = at - s_.points.col(i).head<3>();
+      double squared = away.squaredNorm();
+      if (s_.across != 0) {
+        const Eigen::Vector3d normal = s_.normals.col(i).head<3>();
+        const double along = away.dot(normal);
+        squared += s_.across * along * along;
+        away += s_.across * along * normal;
+      }
+      const double per_rho2 = 1 / (s_.rho(i) * s_.rho(i));
+      const double rest = 1 - squared * per_rho2;
+      if (!(rest > 0)) continue;
+      const double rest3 = rest * rest * rest;
+      sum += rest3 * rest;
+      if (slopes) gradient -= 8 * rest3 * per_rho2 * away;
+    }
+    if (!(sum > kSilence)) return of_nearest(x);
+    const double root = std::sqrt(std::sqrt(sum));
+    gradient_ = s_.unit * (root / (4 * sum)) * gradient;
     return s_.unit * (root - kLevel);
   }
 
