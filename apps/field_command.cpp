@@ -74,7 +74,7 @@ DistanceSolver make_solver(const FieldArguments& arguments, const Surface& surfa
     curves.push_back(read_point_list(file, surface, context));
     if (curves.back().cols() < 2) throw InvalidArgument(file + ": a curve takes two points or more");
   }
-  DistanceSolver solver(surface, curves.front().col(0), {}, arguments.distance_options(surface, false), context);
+  DistanceSolver solver(surface, curves.front().col(0), {}, arguments.distance_options(surface, paths), context);
   solver.set_curves(curves);
   return solver;
 }

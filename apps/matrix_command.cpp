@@ -88,7 +88,8 @@ ExitCode run(MatrixArguments arguments) {
                                                     : MatrixLayout::full;
   MatrixFile file(arguments.out, request_line(arguments, points, targets), layout, matrix.num_rows(),
                   matrix.num_columns());
-  if (file.num_done() > 0) {
+  const bool resumed = file.num_done() > 0;
+  if (resumed) {
     context.tell(fmt::format("going on after {} of {} rows, which an earlier run has answered", file.num_done(),
                              matrix.num_rows()));
   }
@@ -108,10 +109,11 @@ ExitCode run(MatrixArguments arguments) {
   file.finish();
   clear_progress();
   for (const std::string& message : matrix.messages()) print_error(message);
-  std::vector<SceneFact> facts = {{"matrix", fmt::format("{} x {}, {} distances computed", grouped(matrix.num_rows()),
-                                                         grouped(matrix.num_columns()), grouped(file.num_entries()))},
-                                  {"error", fmt::format("{:.1e} at most, estimated", error)},
-                                  {"time", fmt::format("{:.3g} s", timer.seconds())}};
+  std::vector<SceneFact> facts = {
+      {"matrix", fmt::format("{} x {}, {} distances computed", grouped(matrix.num_rows()),
+                             grouped(matrix.num_columns()), grouped(file.num_entries()))},
+      {"error", fmt::format("{:.1e} at most, estimated{}", error, resumed ? ", of the rows of this run" : "")},
+      {"time", fmt::format("{:.3g} s", timer.seconds())}};
   if (file.num_apart() > 0) facts.push_back({"apart", grouped(file.num_apart()) + " without a path: inf"});
   if (file.num_unknown() > 0) facts.push_back({"unknown", grouped(file.num_unknown()) + " not found out: nan"});
   std::cout << facts_text(facts);

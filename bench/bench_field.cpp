@@ -1,12 +1,14 @@
 // Distances from one source to every vertex of a mesh: Taut's fan against CGAL's heat method and exact polyhedral
 // distances, in one run, one thread.
 //
-//   bench_field OPPONENT_FIELD [VERTICES] [polyhedral]
+//   bench_field OPPONENT_FIELD [VERTICES] [polyhedral] [CLOUD ...]
 //
-// OPPONENT_FIELD: the program of that name. VERTICES: about how many a mesh has (default 25,000). The meshes are Taut's
-// own, their vertices exactly on the surface. Prints a Markdown table: seconds cold (Taut: cells, fan and all targets;
-// heat: factorization and one field), seconds of the next field on the same mesh (Taut: another source), errors
-// relative to the farthest distance against Taut's, and Taut's own error against closed forms or a tolerance of 1e-13.
+// OPPONENT_FIELD: the program of that name. VERTICES: about how many a mesh has (default 25,000). CLOUD: point clouds
+// or meshes; fits of all their samples take the place of the formulas, at a tolerance of 1e-6 and on meshes of the
+// default size. The meshes are Taut's own, their vertices exactly on the surface. Prints a Markdown table: seconds cold
+// (Taut: cells, fan and all targets; heat: factorization and one field), seconds of the next field on the same mesh
+// (Taut: another source), errors relative to the farthest distance against Taut's, and Taut's own error against a
+// tolerance of 1e-13 (of fits, 1e-7).
 
 #include <algorithm>
 #include <chrono>
@@ -18,9 +20,11 @@
 #include <string>
 #include <vector>
 
+#include "taut/io/read_point_cloud.hpp"
 #include "taut/io/write_geometry.hpp"
 #include "taut/query/distance.hpp"
 #include "taut/query/surface_mesh.hpp"
+#include "taut/surface/fit.hpp"
 #include "taut/surface/formula.hpp"
 
 namespace {
@@ -42,6 +46,16 @@ constexpr Case kCases[] = {{"sphere", "x^2+y^2+z^2=1", 0.0277},
                            {"triaxial 3:2:1", "x^2/9+y^2/4+z^2=1", 0.0548},
                            {"torus 1, 0.4", "(x^2+y^2+z^2+1-0.16)^2=4*(x^2+y^2)", 0.0311},
                            {"tangle cube", "x^4-5x^2+y^4-5y^2+z^4-5z^2+11.8", 0.0776}};
+
+/// What is measured on, and how exactly.
+struct Subject {
+  std::string name;
+  taut::Surface surface;
+  double cell;  // of the mesh; 0 = chosen
+  double tolerance;
+  double fine;  // tolerance that stands for the truth
+  int repetitions;
+};
 
 struct Opponent {
   double cold = std::nan("");
@@ -72,16 +86,51 @@ Opponent ask(const std::string& program, const std::string& mesh, Index source, 
   return result;
 }
 
+void measure(const Subject& subject, const std::string& program, bool polyhedral, const std::filesystem::path& folder) {
+  const taut::Context one{.threads = 1};
+  const taut::Surface& surface = subject.surface;
+  const taut::SurfaceMesh mesh = taut::display_mesh(surface, {.cell = subject.cell}, one);
+  const std::string file = (folder / "mesh.off").string();
+  taut::write_mesh(file, mesh);
+  const Index n = mesh.vertices.cols();
+  const Index source = n / 3;
+  double cold = 1e9;
+  double next = 1e9;
+  taut::Distances u;
+  for (int i = 0; i < subject.repetitions; ++i) {
+    const auto start = Clock::now();
+    taut::DistanceSolver solver(surface, mesh.vertices.col(source), {}, {.tolerance = subject.tolerance}, one);
+    u = solver.at(mesh.vertices);
+    cold = std::min(cold, seconds_since(start));
+    const auto again = Clock::now();
+    solver.set_sources(mesh.vertices.col(source));
+    (void)solver.at(mesh.vertices);
+    next = std::min(next, seconds_since(again));
+  }
+  taut::DistanceSolver fine(surface, mesh.vertices.col(source), {}, {.tolerance = subject.fine}, one);
+  const Vector truth = fine.at(mesh.vertices).distance;
+  const double off = ((u.distance - truth).cwiseAbs().array() / truth.array().max(1e-300)).maxCoeff();
+  const Opponent heat = ask(program, file, source, "heat", truth, folder);
+  std::printf("| %s | %ld | %.3f | %.3f | %.1e | %.3f | %.3f | %.1e, %.1e | %.1f", subject.name.c_str(),
+              static_cast<long>(n), cold, next, off, heat.cold, heat.next, heat.mean, heat.most, heat.cold / cold);
+  if (polyhedral) {
+    const Opponent exact = ask(program, file, source, "polyhedral", truth, folder);
+    std::printf(" | %.2f | %.1e | %.1f", exact.cold, exact.most, exact.cold / cold);
+  }
+  std::printf(" |\n");
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: bench_field OPPONENT_FIELD [VERTICES] [polyhedral]\n");
+    std::fprintf(stderr, "usage: bench_field OPPONENT_FIELD [VERTICES] [polyhedral] [CLOUD ...]\n");
     return 2;
   }
   const std::string program = argv[1];
   const double vertices = argc > 2 ? std::atof(argv[2]) : 25000;
-  const bool polyhedral = argc > 3;
+  const bool polyhedral = argc > 3 && std::string(argv[3]) == "polyhedral";
   const std::filesystem::path folder = std::filesystem::temp_directory_path() / "taut_bench_field";
   std::filesystem::create_directories(folder);
   std::printf(
@@ -89,40 +138,16 @@ int main(int argc, char** argv) {
       "ratio%s |\n"
       "| --- | --- | --- | --- | --- | --- | --- | --- | ---%s |\n",
       polyhedral ? " | polyhedral, s | max error | ratio" : "", polyhedral ? " | --- | --- | ---" : "");
-  const taut::Context one{.threads = 1};
+  for (int i = 4; i < argc; ++i) {
+    const taut::PointCloud cloud = taut::read_point_cloud(argv[i]);
+    const taut::Surface surface = taut::make_surface(taut::fit_surface(cloud, {.method = taut::FitMethod::local}));
+    measure({std::filesystem::path(argv[i]).filename().string(), surface, 0, 1e-6, 1e-7, 1}, program, polyhedral,
+            folder);
+  }
   for (const Case& c : kCases) {
-    const taut::Surface surface = taut::parse_surface(c.formula);
-    const taut::SurfaceMesh mesh = taut::display_mesh(surface, {.cell = c.cell25 * std::sqrt(25000 / vertices)}, one);
-    const std::string file = (folder / "mesh.off").string();
-    taut::write_mesh(file, mesh);
-    const Index n = mesh.vertices.cols();
-    const Index source = n / 3;
-    double cold = 1e9;
-    double next = 1e9;
-    taut::Distances u;
-    constexpr int kRepetitions = 5;
-    for (int i = 0; i < kRepetitions; ++i) {
-      const auto start = Clock::now();
-      taut::DistanceSolver solver(surface, mesh.vertices.col(source), {}, {}, one);
-      u = solver.at(mesh.vertices);
-      cold = std::min(cold, seconds_since(start));
-      const auto again = Clock::now();
-      solver.set_sources(mesh.vertices.col(source));
-      (void)solver.at(mesh.vertices);
-      next = std::min(next, seconds_since(again));
-    }
-    taut::DistanceSolver fine(surface, mesh.vertices.col(source), {}, {.tolerance = 1e-13}, one);
-    const Vector truth = fine.at(mesh.vertices).distance;
-    const double off = ((u.distance - truth).cwiseAbs().array() / truth.array().max(1e-300)).maxCoeff();
-    const Opponent heat = ask(program, file, source, "heat", truth, folder);
-    std::printf("| %s | %ld | %.3f | %.3f | %.1e | %.3f | %.3f | %.1e, %.1e | %.1f", c.name, static_cast<long>(n), cold,
-                next, off, heat.cold, heat.next, heat.mean, heat.most, heat.cold / cold);
-    if (polyhedral) {
-      const Opponent exact = ask(program, file, source, "polyhedral", truth, folder);
-      std::printf(" | %.2f | %.1e | %.0f", exact.cold, exact.most, exact.cold / cold);
-    }
-    std::printf(" |\n");
-    std::fflush(stdout);
+    if (argc > 4) break;
+    const double cell = c.cell25 * std::sqrt(25000 / vertices);
+    measure({c.name, taut::parse_surface(c.formula), cell, 1e-9, 1e-13, 5}, program, polyhedral, folder);
   }
   std::filesystem::remove_all(folder);
   return 0;

@@ -44,7 +44,7 @@ struct SketchRule {
   int most_steps = 6;
   double most_off = 1e-4;  ///< of patch.sketch, panels' steps: coarser ones say too little
   double settled = 1e-2;   ///< a last step by this leaves its square, times `quadratic`
-  double quadratic = 4;    ///< a panel is nearly linear: one half or so was seen
+  double quadratic = 4;    ///< generous: where the map is even it bends less
   double slack = 2;        ///< of patch.sketch
 };
 constexpr SketchRule kSketch;

@@ -17,7 +17,7 @@ struct PanelPoint {
 [[nodiscard]] PanelPoint panel_point(const ExpPatch& patch, double alpha, double beta);
 
 /// The first terms of the series alone: what most of the way to a point is gone on. Of 4 x 4, 4 x 6, 8 x 6 and 8 x 8
-/// terms the third was quickest on each of five surfaces (docs/measured/field.md).
+/// terms no choice was quicker than the third on any of five surfaces (docs/measured/field.md).
 inline constexpr int kSketchAcross = 8;
 inline constexpr int kSketchAlong = 6;
 [[nodiscard]] PanelPoint panel_sketch(const ExpPatch& patch, double alpha, double beta);

@@ -11,6 +11,7 @@
 #include "curve/polished.hpp"
 #include "fan/fan_answers.hpp"
 #include "fan/geodesic_fan.hpp"
+#include "query/curve_foot.hpp"
 #include "search/cell_levels.hpp"
 #include "strata/faceted_surface.hpp"
 #include "surface/describe.hpp"
@@ -160,7 +161,7 @@ struct DistanceSolver::Impl {
 
   /// A corrected path to each of the columns `open` from each source; the best of them and of what the fan has.
   void ask_paths(const Points& x, const std::vector<Index>& open, Distances& result) {
-    if (!options.paths || !curves.empty()) {
+    if (!options.paths) {
       for (const Index j : open) {
         forget(j, result);
         result.status[static_cast<std::size_t>(j)] = Status::not_converged;
@@ -171,6 +172,7 @@ struct DistanceSolver::Impl {
     }
     if (open.empty()) return;
     need_paths();
+    if (!curves.empty()) return ask_feet(x, open, result);
     Points targets(x.rows(), static_cast<Index>(open.size()));
     for (Index i = 0; i < targets.cols(); ++i) targets.col(i) = x.col(open[static_cast<std::size_t>(i)]);
     std::vector<Way> ways(open.size());  // the shortest path so far
@@ -200,6 +202,42 @@ struct DistanceSolver::Impl {
         result.proof[i] = DistanceProof::none;
       }
     }
+  }
+
+  /// The foot on the curves, by single paths, for each of the columns `open`.
+  void ask_feet(const Points& x, const std::vector<Index>& open, Distances& result) {
+    std::vector<std::vector<SpectralCurve>> arcs;
+    for (const FanCurve& curve : curves) arcs.push_back(curve.arcs);
+    std::vector<Way> ways(open.size());
+    for (std::size_t i = 0; i < open.size(); ++i) {
+      const Index j = open[i];
+      const auto slot = static_cast<std::size_t>(j);
+      context.check_cancelled();
+      detail::CurveFoot foot = detail::nearest_on_curves(*paths, arcs, x.col(j), options.tolerance);
+      result.status[slot] = foot.status;
+      if (foot.status != Status::ok) {
+        forget(j, result);
+        result.message[j] = std::move(foot.message);
+        continue;
+      }
+      if (result.distance(j) <= foot.distance) {  // the fan's
+        foot.distance = result.distance(j);
+        foot.error = result.error(j);
+      } else {
+        result.source[slot] = foot.curve;
+        result.foot.col(j) = foot.foot;
+        ways[i] = {foot.path.points.rowwise().reverse(), -foot.path.end_direction, foot.path.pieces.size() > 1};
+      }
+      result.distance(j) = foot.distance;
+      result.error(j) = foot.error;
+      result.message.erase(j);
+      result.proof[slot] = DistanceProof::path;
+      if (foot.distance > options.max_distance) {
+        forget(j, result);
+        result.proof[slot] = DistanceProof::none;
+      }
+    }
+    find_directions(open, ways, result);
   }
 
   void need_paths() {
@@ -316,21 +354,18 @@ void DistanceSolver::set_sources(const PointsIn& sources, const Vector& values) 
 
 void DistanceSolver::set_curves(const std::vector<Points>& polylines) {
   Impl& impl = *impl_;
-  if (!impl.has_fan()) {
-    throw InvalidArgument("distances from curves are for surfaces in 3 dimensions without edges");
-  }
   if (polylines.empty()) throw InvalidArgument("distances need at least one curve");
   std::vector<FanCurve> curves;
   Index count = 0;
   for (const Points& polyline : polylines) {
-    if (polyline.rows() != 3 || polyline.cols() < 2) {
-      throw InvalidArgument(
-          fmt::format("a curve ({} x {}) to measure from: must be 3 x n, n >= 2", polyline.rows(), polyline.cols()));
+    if (polyline.rows() != impl.surface.dim() || polyline.cols() < 2) {
+      throw InvalidArgument(fmt::format("a curve ({} x {}) to measure from: must be {} x n, n >= 2", polyline.rows(),
+                                        polyline.cols(), impl.surface.dim()));
     }
     curves.push_back(impl.make_curve(polyline));
     count += static_cast<Index>(curves.back().arcs.size()) + 1;
   }
-  Points joints(3, count);
+  Points joints(impl.surface.dim(), count);
   Index next = 0;
   for (const FanCurve& curve : curves) {
     for (const SpectralCurve& arc : curve.arcs) joints.col(next++) = arc.point(0);

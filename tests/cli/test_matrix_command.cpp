@@ -107,6 +107,7 @@ TEST(MatrixCommand, AKilledOneGoesOnWhereItWas) {
   const ProgramResult rest = run_taut(command);
   EXPECT_EQ(rest.exit_code, 0) << rest.err;
   EXPECT_NE(rest.err.find("going on after"), std::string::npos) << rest.err;
+  EXPECT_NE(rest.out.find("of the rows of this run"), std::string::npos) << rest.out;
   const auto whole = folder.path() / "whole.npy";
   const ProgramResult once =
       run_taut({"matrix", kSphere, "--points", points, "--out", whole.string(), "--threads", "1"});

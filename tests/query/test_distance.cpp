@@ -247,13 +247,74 @@ TEST(DistanceSolver, MeasuresFromDenseCurves) {
   }
 }
 
+/// Where no fan is there, paths end on the curve: closed forms, each curve straight when it is unrolled. Feet are at
+/// right angles, at corners or at ends.
+void expect_feet(const Surface& surface, const Points& curve, const Points& targets, const Points& feet,
+                 const Vector& truth) {
+  DistanceSolver solver(surface, curve.col(0));
+  EXPECT_FALSE(solver.has_fan());
+  solver.set_curves({curve});
+  const Distances u = solver.at(targets);
+  for (Index j = 0; j < targets.cols(); ++j) {
+    const std::size_t i = static_cast<std::size_t>(j);
+    ASSERT_EQ(u.status[i], Status::ok) << u.message.at(j);
+    EXPECT_EQ(u.proof[i], DistanceProof::path);
+    EXPECT_EQ(u.source[i], 0);
+    EXPECT_NEAR(u.distance(j), truth(j), 1e-11 + u.error(j));
+    EXPECT_LT(u.error(j), 1e-9);
+    EXPECT_LT((u.foot.col(j) - feet.col(j)).norm(), 1e-6);
+  }
+}
+
+TEST(DistanceSolver, MeasuresFromACurveOnTheThreeSphere) {
+  Points arc = Points::Zero(4, 3);
+  arc.topRows(2) << 1, std::sqrt(0.5), 0, 0, std::sqrt(0.5), 1;
+  const Points targets = random_points(test::unit_sphere(4), 4, 1, 7);
+  Points feet = Points::Zero(4, 4);
+  Vector truth(4);
+  for (Index j = 0; j < 4; ++j) {
+    const double rho = std::hypot(targets(0, j), targets(1, j));
+    const bool inside = targets(0, j) > 0 && targets(1, j) > 0;
+    if (inside) {
+      feet.col(j).head(2) = targets.col(j).head(2) / rho;
+    } else {
+      feet(targets(0, j) > targets(1, j) ? 0 : 1, j) = 1;
+    }
+    truth(j) = std::acos(feet.col(j).dot(targets.col(j)));
+  }
+  expect_feet(test::unit_sphere(4), arc, targets, feet, truth);
+}
+
+TEST(DistanceSolver, MeasuresFromALineOnACylinderInFourDimensions) {
+  const auto place = [](double angle, double z) { return Eigen::Vector4d(std::cos(angle), std::sin(angle), z, 0); };
+  Points line(4, 2);
+  line << place(0, -1), place(0, 1);
+  Points targets(4, 4);
+  targets << place(2.5, 0.3), place(-1, 1.4), place(0.4, -1.3), place(-3, -0.9);
+  Points feet(4, 4);
+  feet << place(0, 0.3), place(0, 1), place(0, -1), place(0, -0.9);
+  const Vector truth = Eigen::Vector4d(2.5, std::hypot(1, 0.4), std::hypot(0.4, 0.3), 3);
+  expect_feet(parse_surface("x1^2+x2^2=1; x4=0*x3"), line, targets, feet, truth);
+}
+
+TEST(DistanceSolver, MeasuresFromASegmentOverTheEdgesOfACube) {
+  const Points segment = (Points(3, 2) << -0.5, 0.5, 0, 0, 1, 1).finished();
+  const Points targets = (Points(3, 4) << 1, 0.3, 0.1, -0.9, 0.2, 1, 0.7, 0.3, 0.3, 0.9, 1, 1).finished();
+  const Points feet = (Points(3, 4) << 0.5, 0.3, 0.1, -0.5, 0, 0, 0, 0, 1, 1, 1, 1).finished();
+  const Vector truth = Eigen::Vector4d(std::hypot(1.2, 0.2), 1.1, 0.7, 0.5);
+  expect_feet(parse_surface("max(abs(x),abs(y),abs(z))=1"), segment, targets, feet, truth);
+}
+
 TEST(DistanceSolver, RefusesWrongCurves) {
   DistanceSolver solver(test::unit_sphere(), Vector(Eigen::Vector3d(1, 0, 0)));
   EXPECT_THROW(solver.set_curves({}), InvalidArgument);
   EXPECT_THROW(solver.set_curves({Points(Points::Identity(3, 1))}), InvalidArgument);
   EXPECT_THROW(solver.set_curves({Points(Vector(Eigen::Vector3d(1, 0, 0)).replicate(1, 2))}), InvalidArgument);
   DistanceSolver many(test::unit_sphere(4), Vector(Vector::Unit(4, 0)));
-  EXPECT_THROW(many.set_curves({Points(Points::Identity(4, 2))}), InvalidArgument);
+  EXPECT_THROW(many.set_curves({Points(Points::Identity(3, 2))}), InvalidArgument);
+  DistanceSolver cube(parse_surface("max(abs(x),abs(y),abs(z))=1"), Vector(Eigen::Vector3d(0, 0, 1)));
+  const Points over_an_edge = (Points(3, 2) << 0, 1, 0, 0, 1, 0).finished();
+  EXPECT_THROW(cube.set_curves({over_an_edge}), InvalidArgument);
 }
 
 TEST(DistanceSolver, RefusesWrongRequests) {

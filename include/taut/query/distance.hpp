@@ -76,10 +76,11 @@ class DistanceSolver {
   /// sources beyond their errors.
   void set_sources(const PointsIn& sources, const Vector& values = {});
 
-  /// Curves as sources instead: each of `polylines` (3 x n, n >= 2, projected) stands for the shortest paths from each
+  /// Curves as sources instead: each of `polylines` (d x n, n >= 2, projected) stands for the shortest paths from each
   /// of its points to the next; one whose last point is its first is closed. Distances are exact for this geodesic
-  /// polygon. Only by the fan: where rays cannot be followed a target is not_converged. Throws InvalidArgument where
-  /// there is no fan (`has_fan`), for a polyline of less than two distinct points, and where no path joins two of them.
+  /// polygon. What the fan does not answer, single paths do, which end on the curve at a right angle, at a corner or at
+  /// its end: some tens of paths a target. Throws InvalidArgument for a polyline of less than two distinct points, and
+  /// where no path joins two of them or it goes over an edge.
   void set_curves(const std::vector<Points>& polylines);
 
   [[nodiscard]] const Surface& surface() const;
