@@ -265,7 +265,8 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   } else {
     for (const StartPath& start : starts.paths) choices.push_back({start.length, start.points, {}});
   }
-  std::optional<Corrected> best;
+  Corrected best;
+  bool any = false;
   std::vector<PathCandidate> candidates;
   std::vector<const Choice*> failed;
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
@@ -287,7 +288,8 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
           promised = std::min(promised, geodesic.length + geodesic.length_error);
         }
         if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));
-        if (!best || is_better(geodesic, best->geodesic)) best = std::move(corrected[j]);
+        if (!any || is_better(geodesic, best.geodesic)) best = std::move(corrected[j]);
+        any = true;
       });
   // A start from which nothing came, though it is as short as what was found, may lead to the shortest path. Where
   // nothing was found, finer cells are the better help.
@@ -296,21 +298,23 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   num_gentle_nodes_ = 0;
   last_gentle_projected_ = (maker_ ? maker_->num_projected() : 0) + kGentleRules.most_projected;
   for (const Choice* choice : failed) {
-    const bool found = is_geodesic(best->geodesic);
+    const bool found = is_geodesic(best.geodesic);
     const bool promises =
-        tries-- > 0 && polyline_length(choice->start) <= (1 + kGentleRules.promise) * best->geodesic.length;
+        tries-- > 0 && polyline_length(choice->start) <= (1 + kGentleRules.promise) * best.geodesic.length;
     if (found ? !promises : !last) break;
     std::optional<NewtonResult> gently = correct_gently(choice->start, lattice);
     if (!gently) continue;
     if (gently->status == Status::ok) add_candidate(candidates, candidate_of(*gently));
-    if (!is_better(*gently, best->geodesic)) continue;
-    best = Corrected{*std::move(gently), {}, choice->start, {}};
-    best->obstacle = obstacle_of(best->geodesic);
+    if (!is_better(*gently, best.geodesic)) continue;
+    best.geodesic = *std::move(gently);
+    best.obstacle = obstacle_of(best.geodesic);
+    best.start = choice->start;
+    best.flow.reset();
   }
-  static_cast<Geodesic&>(result) = std::move(best->geodesic);
-  result.obstacle = std::move(best->obstacle);
-  result.flow = best->flow;
-  result.grid_path = std::move(best->start);
+  static_cast<Geodesic&>(result) = std::move(best.geodesic);
+  result.obstacle = std::move(best.obstacle);
+  result.flow = best.flow;
+  result.grid_path = std::move(best.start);
   result.candidates = std::move(candidates);
   result.tied = !first_is_unique(result.candidates, options_.tolerance);
   const Points& way = starts.paths.front().points;

@@ -119,7 +119,8 @@ class Splitter {
       if (count < kFewestOnSheet || count > kNearest - kFewestOnSheet) return {};
       terms_.row(num_terms_) = upper;
       const TermVector solution = fit_terms(terms_, height_);
-      const AroundRow rest = height_ - solution.transpose().lazyProduct(terms_);
+      AroundRow rest = height_;
+      for (Index j = 0; j < kNearest; ++j) rest(j) -= solution.dot(terms_.col(j));
       const double gap = solution(num_terms_);
       const double left = std::sqrt(rest.squaredNorm() / static_cast<double>(kNearest - num_terms_ - 1));
       split.clarity = gap > 0 ? gap / std::max(left, kRidge) : 0;
