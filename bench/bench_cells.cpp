@@ -49,7 +49,7 @@ void naive_scan_tangle_cube(benchmark::State& state) {
   CellGrid grid(Vector::Zero(3), 1);
   for (auto _ : state) {
     grid = CellGrid(Vector::Constant(3, -kEdge / 2), kEdge / across);
-    CrossingTest test(surface, grid.origin(), grid.size());
+    detail::CrossingTest test(surface, grid.origin(), grid.size());
     std::vector<std::int32_t> row;
     std::vector<std::uint8_t> crossed(static_cast<std::size_t>(across));
     for (std::int32_t z = 0; z < across; ++z) {
