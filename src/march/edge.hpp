@@ -49,7 +49,7 @@ bool make_edge(const SurfacePoint& y, const SurfacePoint& x, Index d, Index k, E
   double part2_x;  // |N_x e|^2
   double product;  // N_y e . N_x e
   double parts;    // |N_y e| + |N_x e|
-  if constexpr (K == 1) {
+  if (K == 1 || k == 1) {  // normals have signs, bases of more have none
     const Map ny(y.normals, d);
     const Map nx(x.normals, d);
     const double cosine = nx.dot(ny);
