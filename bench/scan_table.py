@@ -192,7 +192,7 @@ def row_of(path, options):
     listed = options.work / "pairs.csv"
     listed.write_text("".join(f"@{i},@{j}\n" for i, j in pairs))
     code, out, err, seconds = run([taut, "path", model, "--pairs", listed], limit)
-    rows = out.strip().splitlines()[1:]
+    rows = out.strip().splitlines()
     found = sum(",ok," in row or row.endswith(",ok") or row.startswith("ok,") for row in rows)
     cells.append(f"{1000 * seconds / len(pairs):.1f}, {found} of {len(pairs)} ok" if rows else err.strip()[-40:])
 
