@@ -49,7 +49,8 @@ bool make_edge(const SurfacePoint& y, const SurfacePoint& x, Index d, Index k, E
   double part2_x;  // |N_x e|^2
   double product;  // N_y e . N_x e
   double parts;    // |N_y e| + |N_x e|
-  if (K == 1 || k == 1) {  // normals have signs, bases of more have none
+  // One normal has a sign, a basis of more has none.
+  if (K == 1 || k == 1) {
     const Map ny(y.normals, d);
     const Map nx(x.normals, d);
     const double cosine = nx.dot(ny);
