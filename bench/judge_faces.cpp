@@ -97,6 +97,12 @@ Point on_axis_circle(const Primitive& s, double angle, double radius, double hei
   return s.c + s.n * height + radius * (std::cos(angle) * first + std::sin(angle) * s.n.cross(first));
 }
 
+/// From one angle to another: the short way, or a whole turn less or more.
+double turn_between(double from, double to, int winding) {
+  const double turn = std::remainder(to - from, 2 * kPi);
+  return winding == 0 ? turn : turn + (winding == 1 ? -2 : 2) * kPi;
+}
+
 /// All ways that geodesics of the primitive go from a to b: `winding` tells them apart.
 constexpr int kWindings = 3;
 Curve geodesic(const Primitive& s, const Point& a, const Point& b, int winding) {
@@ -117,9 +123,7 @@ Curve geodesic(const Primitive& s, const Point& a, const Point& b, int winding) 
     }
     case Kind::cylinder: {
       const double from = angle_of(s, a);
-      double turn = std::remainder(angle_of(s, b) - from, 2 * kPi);
-      if (winding == 1) turn -= 2 * kPi;
-      if (winding == 2) turn += 2 * kPi;
+      const double turn = turn_between(from, angle_of(s, b), winding);
       const double low = s.n.dot(a - s.c);
       const double rise = s.n.dot(b - s.c) - low;
       return {std::hypot(s.r * turn, rise),
@@ -127,9 +131,7 @@ Curve geodesic(const Primitive& s, const Point& a, const Point& b, int winding) 
     }
     case Kind::cone: {
       const double from = angle_of(s, a);
-      double turn = std::remainder(angle_of(s, b) - from, 2 * kPi);
-      if (winding == 1) turn -= 2 * kPi;
-      if (winding == 2) turn += 2 * kPi;
+      const double turn = turn_between(from, angle_of(s, b), winding);
       // Unrolled, an angle shrinks by sin of the half angle.
       const double flat = turn * std::sin(s.r);
       if (std::abs(flat) >= kPi) return {};

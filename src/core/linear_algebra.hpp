@@ -39,8 +39,8 @@ struct ThinQr {
 /// d x r: an orthonormal basis of the span of the columns, r their rank to rounding.
 [[nodiscard]] Eigen::MatrixXd span_basis(const PointsIn& columns);
 
-/// A^+ b: of all x with the least |A x - b| the shortest. Singular values below `threshold` of the largest pivot count
-/// as zero; 0 = rounding.
+/// A^+ b: of all x with the least |A x - b| the shortest. Pivots below `threshold` of the largest count as zero; 0 =
+/// rounding.
 [[nodiscard]] Vector least_squares(const PointsIn& a, const VectorIn& b, double threshold = 0);
 
 [[nodiscard]] double determinant(const Eigen::MatrixXd& a);
