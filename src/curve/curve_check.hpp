@@ -14,11 +14,12 @@ namespace taut::detail {
 
 /// What a look between the nodes of a converged curve tells, at p + 2 Gauss points an element.
 ///
-/// Two routes to the length: E = 1/2 int |x'|^2 of the polynomials, and the Lagrangian E + int mu F along the whole
-/// curve, mu = (x'' . g) / |g|^2, which forgives a point off the surface to second order. Their difference is the
+/// Two routes to the length: int |x'| of the polynomials, and the Lagrangian int |x'| + mu F along the whole curve, mu
+/// = (x'' . g) / (|x'| |g|^2), which forgives a point off the surface to second order. Their difference is the
 /// quadrature error of the constraint. What is left is quadratic in the curve's error: its normal part is seen
 /// directly, n . x', its tangential part through the residual P x'' (an element's lowest free mode answers it with (h /
-/// 2)^2 / (p (p + 1))).
+/// 2)^2 / (p (p + 1))). The energy, sqrt(2 T E), would add what the speed varies by: 1e-8 where elements of 1e-5 at a
+/// sharp rim hold up the parameter.
 struct CurveCheck {
   double length = 0;        ///< from the Lagrangian, model units
   double length_error = 0;  ///< model units
@@ -125,10 +126,11 @@ class CurveChecker {
     check.regular = true;
     check.element_corner.assign(static_cast<std::size_t>(m), 0.0);
     check.off_surface = check.geodesic_curvature = check.curvature = check.corner = check.turning = 0;
-    double energy = 0;
+    double length = 0;       // int |x'|
     double correction = 0;   // int mu F
     double corrections = 0;  // the same of each element without its sign: what the quadrature knows it by
-    double remainder = 0;    // of the energy, quadratic in the error
+    double remainder = 0;    // quadratic in the error
+    const double to_length = kernel.length() > 0 ? kernel.period() / kernel.length() : 1;  // dL = dE / speed
     for (Index e = 0; e < m; ++e) {
       const double half = kernel.lengths()[static_cast<std::size_t>(e)] / 2;
       // To P x'' = r an element answers with its lowest free mode, of stiffness p (p + 1) / half^2.
@@ -154,7 +156,8 @@ class CurveChecker {
         Eigen::Map<const Eigen::Matrix<double, D, K>> gradients(jacobian_.col(j).data(), d_, k_);
         first_ = firsts_.col(j);
         second_ = seconds_.col(j);
-        energy += weight * first_.squaredNorm() / 2;
+        const double speed = first_.norm();
+        length += weight * speed;
         if (!value_.col(j).allFinite() || !frame_.compute(gradients)) {
           check.regular = false;
           continue;
@@ -162,19 +165,19 @@ class CurveChecker {
         for (Index i = 0; i < k_; ++i) own_gradient_(i, j) = frame_.own_gradient(i);
         frame_.pseudo_inverse(value_.col(j), scratch_, step_);  // J^+ F
         off = std::max(off, step_.norm());
-        const double mu_f = weight * second_.dot(step_);
-        element_correction += mu_f;
+        if (speed > 0) element_correction += weight * second_.dot(step_) / speed;
         const double normal_speed = (frame_.normals().transpose() * first_).squaredNorm();
         tangential_ = second_ - frame_.normals() * (frame_.normals().transpose() * second_);
         element_remainder += weight * (normal_speed + response * tangential_.squaredNorm()) / 2;
-        // The square of the speed: the parameter is arc length to the order of the error only.
-        const double speed = first_.squaredNorm();
-        check.curvature = std::max(check.curvature, second_.norm() / speed);
-        tangential_ -= first_ * (tangential_.dot(first_) / speed);
-        const double bending = tangential_.norm() / speed;
+        // The parameter is arc length to the order of the error only.
+        const double squared_speed = first_.squaredNorm();
+        check.curvature = std::max(check.curvature, second_.norm() / squared_speed);
+        tangential_ -= first_ * (tangential_.dot(first_) / squared_speed);
+        const double bending = tangential_.norm() / squared_speed;
         check.geodesic_curvature = std::max(check.geodesic_curvature, bending);
-        check.turning += weight * bending * std::sqrt(speed);
+        check.turning += weight * bending * speed;
       }
+      element_remainder *= to_length;
       const double caution = is_smooth(element, seconds_.middleCols(e * checks, checks)) ? 1 : kRoughness;
       element_remainder *= caution;
       check.off_surface = std::max(check.off_surface, off);
@@ -183,13 +186,8 @@ class CurveChecker {
       remainder += element_remainder;
       check.element_error[static_cast<std::size_t>(e)] = element_remainder + caution * std::abs(element_correction);
     }
-    const double lagrangian = energy + correction;
-    // E = L^2 / (2 T) at constant speed.
-    check.length = std::sqrt(2 * kernel.period() * std::max(lagrangian, 0.0));
-    const double speed = check.length / kernel.period();
-    const double to_length = speed > 0 ? 1 / speed : 1;  // dL = dE / speed
-    for (double& error : check.element_error) error *= to_length;
-    check.length_error = to_length * (remainder + corrections);
+    check.length = std::max(length + correction, 0.0);
+    check.length_error = remainder + corrections;
     find_dips(kernel, check);
   }
 

@@ -97,7 +97,11 @@ class NewtonDriver : public NewtonSolver::Backend {
  private:
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
-  static constexpr int kMostCuts = 11;  // of a coarse segment, into halves
+  static constexpr int kMostCuts = 16;          // of a coarse segment, into halves
+  static constexpr double kShortestCut = 1e-6;  // of the whole: segments that short are left as they are
+  // Of the lengths of neighbouring elements, at most. Without it Newton's method loses paths over the rims of
+  // ellipsoids 1:1:0.01 and 1:1:0.005 at any tolerance; with it they are found at all, down to 1:1:0.002.
+  static constexpr double kGrading = 4;
   static constexpr int kMaxCycles = 14;
   static constexpr double kClosingIn = 0.8;       // the weakest gradient seen falls by this from cycle to cycle
   static constexpr double kSoftRounding = 1e-11;  // of the length: differences along neutral directions below
@@ -179,7 +183,7 @@ class NewtonDriver : public NewtonSolver::Backend {
   bool refine_coarse(double limit, const Points* path, std::vector<double>& arcs) {
     measure_turning();
     const Index m = kernel_.num_elements();
-    const double shortest = 1e-6 * kernel_.period();
+    const double shortest = kShortestCut * kernel_.period();
     std::vector<double> lengths;
     std::vector<double> new_arcs{0.0};
     const bool by_arc = path != nullptr;
@@ -242,8 +246,9 @@ class NewtonDriver : public NewtonSolver::Backend {
     }
     const auto wanted = static_cast<Index>(std::ceil(turn / turn_allowed(p)));
     // The order of the method does the rest: elements that err are cut later.
-    const Index m = std::clamp<Index>(wanted, 1, options_.max_elements);
-    std::vector<double> lengths = equidistribute(lengths_, density, m);
+    std::vector<double> lengths =
+        graded(equidistribute(lengths_, density, std::clamp<Index>(wanted, 1, options_.max_elements)));
+    const auto m = static_cast<Index>(lengths.size());
     // Arc length as parameter: scale to the length found.
     const double stretch = kernel_.length() / kernel_.period();
     const ReferenceElement& element = ReferenceElement::of_degree(p);
@@ -261,6 +266,24 @@ class NewtonDriver : public NewtonSolver::Backend {
     for (double& h : lengths_) h *= stretch;
     kernel_.set_mesh(p, lengths_);
     kernel_.nodes() = nodes;
+  }
+
+  // Cuts elements into halves until none is longer than kGrading times a neighbour: towards a bend that is far sharper
+  // than the rest a polynomial over all that leads there would miss it.
+  [[nodiscard]] std::vector<double> graded(std::vector<double> lengths) const {
+    for (bool cut = true; cut && static_cast<Index>(lengths.size()) < options_.max_elements;) {
+      std::vector<double> finer;
+      for (std::size_t e = 0; e < lengths.size(); ++e) {
+        double least = lengths[e];
+        if (e > 0) least = std::min(least, lengths[e - 1]);
+        if (e + 1 < lengths.size()) least = std::min(least, lengths[e + 1]);
+        const bool halve = lengths[e] > kGrading * least;
+        finer.insert(finer.end(), halve ? 2 : 1, halve ? lengths[e] / 2 : lengths[e]);
+      }
+      cut = finer.size() > lengths.size();
+      lengths = std::move(finer);
+    }
+    return lengths;
   }
 
   // The cubic through the four nodes of a polyline around parameter t.

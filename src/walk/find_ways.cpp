@@ -1,11 +1,14 @@
 #include "walk/find_ways.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <random>
 #include <utility>
 
 #include "core/random.hpp"
 #include "walk/follow_curve.hpp"
+#include "walk/ray_ways.hpp"
 #include "walk/sample_graph.hpp"
 #include "walk/surface_walker.hpp"
 #include "walk/tree_search.hpp"
@@ -65,6 +68,10 @@ Ways find_ways(const Surface& surface, const Vector& p, const Vector& q, bool al
     Points way = search_by_samples(walker, p, q, surface.samples()->points, context);
     if (way.cols() >= 2) ways.push_back(std::move(way));
   }
+  // Of a thin body a straight walk may have stepped to the other sheet, and lead nowhere.
+  std::vector<Points> rays = ways_by_rays(surface, p, q, context);
+  if (!rays.empty()) result.sought = Ways::Sought::at_random;
+  std::ranges::move(rays, std::back_inserter(ways));
   if (all || ways.empty()) {
     add_detours(walker, p, q, ways);
     result.sought = Ways::Sought::at_random;
