@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <vector>
 
 #include "points_argument.hpp"
 #include "taut/core/error.hpp"
@@ -90,6 +91,22 @@ void refuse_forgotten_value(const Surface& surface, const std::string& text) {
                   least >= -kRounding ? "below" : "above"));
 }
 
+/// A=1,B=2 as A=1 and B=2.
+std::vector<std::string> single_parameters(const std::vector<std::string>& given) {
+  std::vector<std::string> single;
+  for (const std::string& text : given) {
+    std::istringstream parts(text);
+    for (std::string part; std::getline(parts, part, ',');) {
+      if (part.size() < text.size() && part.find('=') == std::string::npos) {
+        throw UsageError(
+            fmt::format("--set {}: '{}' has no name; write NAME=VALUE, as in --set R=1.5,r=0.5", text, part));
+      }
+      single.push_back(part);
+    }
+  }
+  return single;
+}
+
 }  // namespace
 
 FormulaOptions formula_options(const SurfaceArguments& arguments, const std::string& text) {
@@ -98,7 +115,7 @@ FormulaOptions formula_options(const SurfaceArguments& arguments, const std::str
   options.domain = arguments.domain;
   std::string all_text = text;
   for (const std::string& condition : arguments.domain) all_text += ";" + condition;
-  for (const std::string& given : arguments.parameters) {
+  for (const std::string& given : single_parameters(arguments.parameters)) {
     const std::size_t equals = given.find('=');
     if (equals == std::string::npos || equals == 0) {
       throw UsageError("--set " + given + ": write NAME=VALUE, as in --set R=1.5");
@@ -106,7 +123,6 @@ FormulaOptions formula_options(const SurfaceArguments& arguments, const std::str
     const std::string name = given.substr(0, equals);
     const Vector value =
         parse_numbers(given.substr(equals + 1), "--set " + name, "write one number, as in --set R=1.5");
-    if (value.size() != 1) throw UsageError("--set " + given + ": give one value");
     options.parameters[name] = value(0);
     if (!text.empty() && !uses(all_text, name)) {
       throw UsageError(fmt::format("--set {}: the formula has no {}; write its name as in the formula", given, name));

@@ -135,7 +135,7 @@ void SurfaceArguments::add_to(CLI::App& command) {
                   "without a header are coordinates")
       ->check(whole_number(2, 65535));
   command.add_option("--vars", variables, "the formula's variables in place of x y z w or x1 x2 ..., as in theta,phi");
-  command.add_option("--set", parameters, "a parameter of the formula, NAME=VALUE (repeatable)")
+  command.add_option("--set", parameters, "parameters of the formula, as in R=1.5,r=0.5 (repeatable)")
       ->allow_extra_args(false);
   command.add_option("--domain", domain, "keep the surface where this holds, as in 'z >= 0' (repeatable)")
       ->allow_extra_args(false);

@@ -58,6 +58,10 @@ Run add_mesh_command(CLI::App& app) {
   CLI::App& command = *app.add_subcommand("mesh", "triangles on the surface, every vertex exact");
   arguments->surface.add_to(command);
   add_cell_options(command, arguments->options.cell, arguments->options.grid);
+  command
+      .add_option("--component", arguments->options.component,
+                  "one connected piece alone: 1 the largest, 2 the next (default: all)")
+      ->check(CLI::Range(1, 1'000'000));
   arguments->files.add_to(command, OutputKind::mesh, "write")->required();
   arguments->common.add_to(command);
   return [arguments] { return run(*arguments); };

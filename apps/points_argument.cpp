@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -26,6 +28,24 @@ double parse_number(std::string_view text, const std::string& what, const char* 
     throw UsageError(fmt::format("{}: '{}' is no number; {}", what, text, remedy));
   }
   return value;
+}
+
+/// The one last coordinate with F(x1, ..., z) = 0 where F is linear in z, as for z = f(x, y); else none.
+std::optional<double> solve_for_last(const Surface& surface, const Vector& others) {
+  constexpr double kRounding = 1e-12;
+  if (surface.kind() != "formula" || surface.codim() != 1 || others.size() + 1 != surface.dim()) return std::nullopt;
+  Vector x(surface.dim());
+  x << others, 0;
+  const double value = surface.value(x)(0);
+  const double slope = surface.jacobian(x)(others.size(), 0);
+  if (!std::isfinite(value) || !std::isfinite(slope) || slope == 0) return std::nullopt;
+  for (const double z : {1.0, -std::numbers::sqrt2, std::numbers::e}) {
+    x(others.size()) = z;
+    const double expected = value + slope * z;
+    const double scale = std::abs(value) + std::abs(slope * z);
+    if (!(std::abs(surface.value(x)(0) - expected) <= kRounding * scale)) return std::nullopt;
+  }
+  return -value / slope;
 }
 
 }  // namespace
@@ -63,6 +83,9 @@ Vector parse_point(const std::string& text, const char* option, const Surface& s
     const std::optional<double> z = height_at(surface, point(0), point(1));
     if (!z) throw InvalidArgument(fmt::format("{} {}: lies outside of the height field", option, text));
     point = Eigen::Vector3d(point(0), point(1), *z);
+  } else if (const std::optional<double> z = solve_for_last(surface, point)) {
+    point.conservativeResize(surface.dim());
+    point(surface.dim() - 1) = *z;
   }
   if (point.size() > surface.dim() && surface.kind() == "formula") {
     throw InvalidArgument(

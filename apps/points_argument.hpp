@@ -14,7 +14,8 @@ class UsageError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// "1,0,0", or "@17" for the 17th sample from 0. `option` names it in messages. Throws UsageError for text that is
+/// "1,0,0", or "@17" for the 17th sample from 0; "1,0" over heights and where a formula is linear in its last variable,
+/// as z = f(x, y) is. `option` names it in messages. Throws UsageError for text that is
 /// no point, InvalidArgument for one that does not fit the surface.
 [[nodiscard]] Vector parse_point(const std::string& text, const char* option, const Surface& surface);
 

@@ -6,17 +6,15 @@
 
 #include <string>
 
+#include "core/check_tolerance.hpp"
 #include "curve/newton_backend.hpp"
-#include "surface/describe.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut {
 namespace {
 
 void check(const NewtonOptions& options) {
-  if (!(options.tolerance >= 1e-13 && options.tolerance <= 1e-3)) {
-    throw InvalidArgument("tolerance is " + detail::describe(options.tolerance) + ", must be in 1e-13 .. 1e-3");
-  }
+  detail::check_tolerance(options.tolerance);
   if (options.max_iterations < 1) {
     throw InvalidArgument("max_iterations is " + std::to_string(options.max_iterations) + ", must be at least 1");
   }

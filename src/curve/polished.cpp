@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/check_tolerance.hpp"
 #include "core/linear_algebra.hpp"
 #include "taut/core/error.hpp"
 #include "taut/curve/exponential_map.hpp"
@@ -48,8 +49,7 @@ double spread(const Surface& surface, const Vector& from, const Vector& v, doubl
 }  // namespace
 
 NewtonResult polished(const Surface& surface, const PointsIn& points, const Context& context) {
-  constexpr double kFinest = 1e-13;  // relative length tolerance: the least there is
-  return correct_newton(surface, points, {.tolerance = kFinest, .leave_saddles = false}, context);
+  return correct_newton(surface, points, {.tolerance = kLeastTolerance, .leave_saddles = false}, context);
 }
 
 EndDirections end_directions(const Surface& surface, const NewtonResult& geodesic, const Context& context) {

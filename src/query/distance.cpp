@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/check_tolerance.hpp"
 #include "core/parallel.hpp"
 #include "curve/polished.hpp"
 #include "fan/fan_answers.hpp"
@@ -36,9 +37,7 @@ constexpr double kMostCellsOff = 10;
 
 void check(const DistanceOptions& options) {
   using detail::describe;
-  if (!(options.tolerance >= 1e-13 && options.tolerance <= 1e-3)) {
-    throw InvalidArgument("tolerance is " + describe(options.tolerance) + ", must be in 1e-13 .. 1e-3");
-  }
+  detail::check_tolerance(options.tolerance);
   if (!(options.max_distance > 0)) {
     throw InvalidArgument("max_distance is " + describe(options.max_distance) + ", must be > 0");
   }

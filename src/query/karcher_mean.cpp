@@ -24,6 +24,16 @@
 namespace taut {
 namespace {
 
+struct MeanRules {
+  int starts = 3;               ///< of the points, from which a minimum is sought
+  double shortest_step = 1e-6;  ///< of Newton's: halved to less, none leads down
+  double rounding = 1e-12;      ///< of the variance: what the last steps gain drowns in it
+  double tolerable = 1e3;       ///< times what is asked for: a gradient at rest where no step leads down
+  double same_place = 1e-5;     ///< of the root of the variance: two minima that close are one
+  double as_good = 1e-6;        ///< of the variance: another minimum that is higher by no more is as good
+};
+constexpr MeanRules kRules;
+
 /// Distances and directions from one place to the points.
 struct Look {
   Vector x;
@@ -93,12 +103,12 @@ class Descent {
       const double expected = 0.5 * step * down.dot(here.mean_log);
       if (next.variance > here.variance - expected && step * down.norm() > enough(spread)) {
         // Rounding hides what the last steps gain: then the gradient tells.
-        const bool hidden = std::abs(next.variance - here.variance) < 1e-12 * here.variance;
+        const bool hidden = std::abs(next.variance - here.variance) < kRules.rounding * here.variance;
         if (!hidden || next.mean_log.norm() > slope) {
           step /= 2;
           // No step leads down any more: at rest if the gradient is small enough for it.
-          if (step < 1e-6) {
-            here.converged = slope <= 1e3 * enough(spread);
+          if (step < kRules.shortest_step) {
+            here.converged = slope <= kRules.tolerable * enough(spread);
             return here;
           }
           continue;
@@ -177,12 +187,11 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
   Descent descent(surface, points, w, options, context);
   KarcherMean result;
   // The variance may have several minima: the descent begins at points far from each other.
-  constexpr int kStarts = 3;
   std::vector<Look> found;
   Index first = 0;
   w.maxCoeff(&first);
   Vector nearest = Vector::Constant(n, std::numeric_limits<double>::infinity());  // to starts and minima so far
-  for (int start = 0; start < std::min<Index>(kStarts, n); ++start) {
+  for (int start = 0; start < std::min<Index>(kRules.starts, n); ++start) {
     Index at = first;
     // The point farthest from all starts and minima so far.
     if (start > 0) nearest.maxCoeff(&at);
@@ -199,7 +208,7 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
     if (begin.complete) nearest = nearest.cwiseMin(begin.distance);
     nearest = nearest.cwiseMin(minimum.distance);
     const bool known = std::ranges::any_of(found, [&](const Look& other) {
-      return (other.x - minimum.x).norm() <= 1e-5 * std::sqrt(std::max(other.variance, minimum.variance));
+      return (other.x - minimum.x).norm() <= kRules.same_place * std::sqrt(std::max(other.variance, minimum.variance));
     });
     if (!known && (start == 0 || minimum.converged)) found.push_back(minimum);
   }
@@ -213,7 +222,7 @@ KarcherMean karcher_mean(const Surface& surface, const PointsIn& points, const V
   result.num_iterations = descent.num_iterations;
   for (std::size_t i = 1; i < found.size(); ++i) {
     result.others.push_back(found[i].x);
-    if (found[i].variance <= best.variance * (1 + 1e-6)) {
+    if (found[i].variance <= best.variance * (1 + kRules.as_good)) {
       result.unique = false;
       result.message = "another point was found that is as good: the points lie all round the surface";
     }

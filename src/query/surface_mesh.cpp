@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "query/mesh_component.hpp"
 #include "search/cell_levels.hpp"
 #include "strata/facet_complex.hpp"
 #include "strata/sharp_mesh.hpp"
@@ -107,6 +108,7 @@ SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& optio
     detail::sharpen_mesh(*complex->surface, complex->network, grid, options.part_faces, mesh);
     mesh.edges = lines_of(*complex);
   }
+  if (options.component != 0) detail::keep_component(mesh, options.component);
   return mesh;
 }
 

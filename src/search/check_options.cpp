@@ -4,15 +4,14 @@
 
 #include <cmath>
 
+#include "core/check_tolerance.hpp"
 #include "search/cell_levels.hpp"
 #include "taut/core/error.hpp"
 
 namespace taut::detail {
 
 void check_options(const PathOptions& options) {
-  if (!(options.tolerance >= 1e-13) || !(options.tolerance <= 1e-3)) {
-    throw InvalidArgument(fmt::format("tolerance {}: must be from 1e-13 to 1e-3", options.tolerance));
-  }
+  check_tolerance(options.tolerance);
   if (!(options.spacing >= 0) || !std::isfinite(options.spacing)) {
     throw InvalidArgument(fmt::format("node spacing {}: must be positive, or 0 to have it chosen", options.spacing));
   }

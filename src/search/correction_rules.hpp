@@ -31,8 +31,9 @@ struct GentleRules {
   /// points; on noise of the size of the segments they never do.
   Index most_projected = 100'000;
   Index most_points = 5'000;
-  double segments = 96;  ///< of shortening
-  double off = 0.1;      ///< how far from the surface its start may be, in its length
+  double segments = 96;             ///< of shortening
+  double off = 0.1;                 ///< how far from the surface its start may be, in its length
+  double settled[2] = {0.1, 1e-3};  ///< steps at which it is at rest, in segments: Newton's method is tried after each
 };
 
 inline constexpr CorrectionRules kCorrectionRules;

@@ -149,7 +149,7 @@ std::optional<NewtonResult> Corrector::correct_gently(const Points& start, const
   const double gap = length / kGentleRules.segments;
   try {
     Shortening shortening(*maker_, maker_->make(start, false, gap, kGentleRules.off * length), gap, left);
-    for (const double settled : {0.1, 1e-3}) {
+    for (const double settled : kGentleRules.settled) {
       const Shortening::Outcome outcome = shortening.run(settled * gap, context_);
       if (auto geodesic = solve(shortening.strand().polyline())) return geodesic;
       if (outcome == Shortening::Outcome::stuck) break;

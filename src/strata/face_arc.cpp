@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/check_tolerance.hpp"
 #include "curve/polyline.hpp"
 #include "strata/chain_tolerances.hpp"
 
@@ -88,7 +89,8 @@ bool trace_face_arc(FacetedSurface& surface, ChainArc& arc, const Point3& a, con
     set_straight(a, b, arc);
     return true;
   }
-  if (!face.solver) face.solver.emplace(face.surface, NewtonOptions{.tolerance = 1e-13, .leave_saddles = false});
+  if (!face.solver)
+    face.solver.emplace(face.surface, NewtonOptions{.tolerance = kLeastTolerance, .leave_saddles = false});
   if ((b - a).norm() <= ChainTolerances::together * surface.scale) {
     set_straight(a, b, arc);
     return true;

@@ -42,6 +42,21 @@ TEST(InputsAndOutputs, VariablesOfTheUsersOwn) {
   EXPECT_NEAR(nlohmann::json::parse(result.out)["length"].get<double>(), std::numbers::pi / 2, 1e-9);
 }
 
+// Where F is linear in its last variable that need not be given: a saddle z = x y holds straight lines.
+TEST(InputsAndOutputs, PointsOfAGraphByTwoCoordinates) {
+  const test::ProgramResult result =
+      run_taut({"path", "z = c x y + h", "--set", "c=2,h=-1", "--from", "3,1", "--to", "3,-1", "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const auto path = nlohmann::json::parse(result.out);
+  EXPECT_EQ(path["from"].get<std::vector<double>>(), (std::vector<double>{3, 1, 5}));
+  EXPECT_NEAR(path["length"].get<double>(), std::hypot(2, 12), 1e-9);
+  EXPECT_EQ(run_taut({"path", "z^2 = x + y", "--from", "1,0", "--to", "0,1"}).exit_code, 3);
+  const test::ProgramResult decimal_comma =
+      run_taut({"path", "z = c x y", "--set", "c=1,5", "--from", "1,0", "--to", "0,1"});
+  EXPECT_EQ(decimal_comma.exit_code, 2);
+  EXPECT_NE(decimal_comma.err.find("'5' has no name"), std::string::npos) << decimal_comma.err;
+}
+
 TEST(InputsAndOutputs, StandardInputIsReadEverywhere) {
   const TempFolder folder;
   const auto points = folder.write("points.csv", "0,1,0\n0,0,1\n");

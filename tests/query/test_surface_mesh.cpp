@@ -32,6 +32,42 @@ TEST(DisplayMesh, IsNoCoarserThanAskedFor) {
   EXPECT_GT(display_mesh(sphere, {.cell_at_most = 0.01}).faces.cols(), 2 * chosen);
 }
 
+// Two spheres, and a cube with sharp edges between them: areas 4 pi, 6 x 0.36, 4 pi 0.04.
+TEST(DisplayMesh, OneComponentOfSeveral) {
+  const Surface three =
+      parse_surface("min(x^2+y^2+z^2-1, min((x-4)^2+y^2+z^2-0.04, max(abs(x-2), max(abs(y), abs(z)))-0.3))");
+  const auto area = [](const SurfaceMesh& mesh) {
+    double sum = 0;
+    for (Index f = 0; f < mesh.faces.cols(); ++f) {
+      const Eigen::Vector3d a = mesh.vertices.col(mesh.faces(0, f));
+      const Eigen::Vector3d b = mesh.vertices.col(mesh.faces(1, f));
+      const Eigen::Vector3d c = mesh.vertices.col(mesh.faces(2, f));
+      sum += (b - a).cross(c - a).norm() / 2;
+    }
+    return sum;
+  };
+  for (const bool part_faces : {false, true}) {
+    const auto piece = [&](int which) {
+      return display_mesh(three, {.cell = 0.05, .part_faces = part_faces, .component = which});
+    };
+    const SurfaceMesh all = piece(0);
+    const SurfaceMesh ball = piece(1);
+    const SurfaceMesh cube = piece(2);
+    const SurfaceMesh bead = piece(3);
+    EXPECT_NEAR(area(ball), 4 * std::numbers::pi, 0.02);
+    EXPECT_NEAR(area(cube), 2.16, 1e-9);
+    EXPECT_NEAR(area(bead), 0.16 * std::numbers::pi, 0.01);
+    EXPECT_EQ(ball.faces.cols() + cube.faces.cols() + bead.faces.cols(), all.faces.cols());
+    EXPECT_EQ(ball.vertices.cols() + cube.vertices.cols() + bead.vertices.cols(), all.vertices.cols());
+    EXPECT_LT((ball.vertices.colwise().norm().array() - 1).abs().maxCoeff(), 1e-12);
+    EXPECT_EQ(cube.normals.cols(), cube.vertices.cols());
+    EXPECT_EQ(cube.cell.size(), static_cast<std::size_t>(cube.vertices.cols()));
+    EXPECT_EQ(cube.edges.lines.size(), 12U);
+    EXPECT_TRUE(ball.edges.lines.empty());
+    EXPECT_THROW((void)piece(4), InvalidArgument);
+  }
+}
+
 TEST(DisplayMesh, OfManySamplesStaysWithinItsBudget) {
   PointCloud cloud;
   const Index n = 30'000;

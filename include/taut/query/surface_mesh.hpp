@@ -18,13 +18,14 @@ struct DisplayMeshOptions {
   /// mesh is no manifold then.
   bool part_faces = false;
   Points seeds = {};  ///< d x n: where Algorithm II begins on a surface that brings no samples (grid = grow)
+  int component = 0;  ///< one connected piece alone (d = 3): 1 the largest by area, 2 the next, ...; 0 = all
 };
 
 /// The surface as triangles, its box and cell size chosen: `mesh_surface` for people in a hurry. Cells are half as
 /// large as those that paths are marched on, or coarser where there would be more than 20,000 of a fitted surface
 /// (150,000 of another one). Edges and corners of formulas with `min max abs sign`, and those of a domain, are in the
-/// mesh: each corner is a vertex, and edges are chains of its sides. Throws as `mesh_surface` does, and EmptySurface
-/// when there is nothing to mesh.
+/// mesh: each corner is a vertex, and edges are chains of its sides. Throws as `mesh_surface` does, EmptySurface when
+/// there is nothing to mesh, and InvalidArgument where it has fewer components than asked for.
 [[nodiscard]] SurfaceMesh display_mesh(const Surface& surface, const DisplayMeshOptions& options = {},
                                        const Context& context = {});
 
