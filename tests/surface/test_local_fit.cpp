@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/clouds.hpp"
+#include "surface/simd_dispatch.hpp"
 #include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/conformance.hpp"
@@ -120,6 +121,35 @@ TEST(LocalFit, KeepsThePromisesOfAnEvaluator) {
       EXPECT_NE(found.rule, "batch") << found.detail;
       EXPECT_NE(found.rule, "nan") << found.detail;
     }
+  }
+}
+
+TEST(LocalFit, IsTheSameOnAnyInstructionSet) {
+  const auto best = detail::instruction_set();
+  for (const PointCloud& cloud : {circle_cloud(60), test::sphere_cloud(3, 400)}) {
+    const Surface surface = surface_of(cloud);
+    const Index d = surface.dim();
+    Points x(d, 200);
+    test::Uniform uniform(5);
+    for (double& c : x.reshaped()) c = 2.4 * uniform() - 1.2;
+    x.leftCols(100).colwise().normalize();
+    Points value;
+    Points jacobian;
+    Eigen::MatrixXd hessian;
+    for (const auto set : {detail::InstructionSet::baseline, detail::InstructionSet::sse4, detail::InstructionSet::avx2,
+                           detail::InstructionSet::avx512}) {
+      if (!detail::has_instruction_set(set)) continue;
+      detail::use_instruction_set(set);
+      if (set == detail::InstructionSet::baseline) {
+        value = surface.value(x);
+        jacobian = surface.jacobian(x);
+        hessian = surface.hessian(x.col(0), Vector::Ones(1));
+      }
+      EXPECT_EQ(surface.value(x), value);
+      EXPECT_EQ(surface.jacobian(x), jacobian);
+      EXPECT_EQ(surface.hessian(x.col(0), Vector::Ones(1)), hessian);
+    }
+    detail::use_instruction_set(best);
   }
 }
 
