@@ -153,6 +153,26 @@ TEST(LocalFit, IsTheSameOnAnyInstructionSet) {
   }
 }
 
+// Most points are known to be inside by a sample that held another one.
+TEST(LocalFit, TheSideOfItsBorderIsThatOfTheValue) {
+  const PointCloud sphere = test::sphere_cloud(3, 2000);
+  PointCloud half = test::empty_cloud(3, 1000);
+  half.points = sphere.points.leftCols(1000);
+  half.normals = sphere.normals.leftCols(1000);
+  const Surface surface = surface_of(half);
+  Points x(3, 3000);
+  test::Uniform uniform(7);
+  for (double& c : x.reshaped()) c = 2.4 * uniform() - 1.2;
+  x.leftCols(2500).colwise().normalize();
+  const std::unique_ptr<Evaluator> domain = surface.domain()->make_evaluator();
+  Vector value(x.cols());
+  domain->evaluate({.n = x.cols(), .x = x.data(), .value = value.data()});
+  const auto inside = surface.inside_domain(x);
+  EXPECT_GT(inside.count(), 500);
+  EXPECT_GT(x.cols() - inside.count(), 500);
+  for (Index j = 0; j < x.cols(); ++j) EXPECT_EQ(inside(j), value(j) >= 0) << x.col(j).transpose();
+}
+
 TEST(LocalFit, BoundsExcludeBoxesBesideTheSurface) {
   const Surface surface = surface_of(test::sphere_cloud(3, 4000));
   const auto evaluator = surface.make_evaluator();
