@@ -183,12 +183,13 @@ struct GeodesicFan::Impl {
           continue;
         }
         constexpr double kOrder = detail::kSeries;
-        const double along = std::pow(tolerance / std::max(stepper.error_along, 1e-300), 1 / kOrder);
-        if (stepper.error_along > tolerance) {
+        const double off = 10 * tolerance + 1e-13 * stepper.width;
+        const double too_long = std::max(stepper.error_along / tolerance, stepper.off_along / off);
+        const double along = std::pow(1 / std::max(too_long, 1e-300), 1 / kOrder);
+        if (too_long > 1) {
           h *= std::clamp(0.9 * along, 0.25, 0.85);
           continue;
         }
-        const double off = 10 * tolerance + 1e-13 * stepper.width;
         const bool narrow = stepper.error_across <= tolerance && stepper.width <= options.max_panel &&
                             stepper.off_surface <= off &&
                             stepper.mismatch <= 300 * tolerance + 1e-12 * (stepper.width + scale);
