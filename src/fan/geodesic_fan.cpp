@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -72,7 +73,7 @@ struct GeodesicFan::Impl {
   std::vector<SpectralCurve> arcs;
   std::vector<RayStrip> strips;  // that go on
   std::vector<PatchFrame> frames;
-  std::vector<ExpPatch> patches;
+  std::deque<ExpPatch> patches;  // large: none is moved when more come
   detail::PatchIndex index;
   /// Where rays could not be followed: a ball round the strip's end, and the distance of what goes on from there.
   struct Break {
