@@ -526,6 +526,7 @@ double GeodesicFan::bound(const Eigen::Vector3d& q) const {
 }
 bool GeodesicFan::finished() const { return impl_->strips.empty() || impl_->spent(); }
 bool GeodesicFan::broken() const { return !impl_->breaks.empty(); }
+double GeodesicFan::tolerance() const { return impl_->options.tolerance; }
 Index GeodesicFan::num_patches() const { return static_cast<Index>(impl_->patches.size()); }
 Index GeodesicFan::num_evaluated() const { return impl_->num_evaluated; }
 
