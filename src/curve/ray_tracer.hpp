@@ -13,6 +13,7 @@
 #include "curve/ray_backend.hpp"
 #include "curve/ray_jacobi.hpp"
 #include "curve/ray_step.hpp"
+#include "surface/sign_evaluator.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/projection.hpp"
 
@@ -294,6 +295,9 @@ class RayTracer : public ExponentialMap::Backend {
       at[static_cast<std::size_t>(2 * i)] = t.node(i);
       at[static_cast<std::size_t>(2 * i + 1)] = t.check(i + 1);
     }
+    std::array<bool, 2 * kStages> inside{};
+    are_nonnegative(*domain_, m, x.cols(), x.data(), inside.data());
+    if (std::ranges::count(inside, false) == 0) return h;
     const Eigen::VectorXd margin = domain_margin(x, m);
     double before = 0;
     for (Index j = 0; j < 2 * kStages; ++j) {

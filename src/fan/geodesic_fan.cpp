@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -72,7 +73,7 @@ struct GeodesicFan::Impl {
   std::vector<SpectralCurve> arcs;
   std::vector<RayStrip> strips;  // that go on
   std::vector<PatchFrame> frames;
-  std::vector<ExpPatch> patches;
+  std::deque<ExpPatch> patches;  // large: none is moved when more come
   detail::PatchIndex index;
   /// Where rays could not be followed: a ball round the strip's end, and the distance of what goes on from there.
   struct Break {
@@ -183,12 +184,13 @@ struct GeodesicFan::Impl {
           continue;
         }
         constexpr double kOrder = detail::kSeries;
-        const double along = std::pow(tolerance / std::max(stepper.error_along, 1e-300), 1 / kOrder);
-        if (stepper.error_along > tolerance) {
+        const double off = 10 * tolerance + 1e-13 * stepper.width;
+        const double too_long = std::max(stepper.error_along / tolerance, stepper.off_along / off);
+        const double along = std::pow(1 / std::max(too_long, 1e-300), 1 / kOrder);
+        if (too_long > 1) {
           h *= std::clamp(0.9 * along, 0.25, 0.85);
           continue;
         }
-        const double off = 10 * tolerance + 1e-13 * stepper.width;
         const bool narrow = stepper.error_across <= tolerance && stepper.width <= options.max_panel &&
                             stepper.off_surface <= off &&
                             stepper.mismatch <= 300 * tolerance + 1e-12 * (stepper.width + scale);
@@ -524,6 +526,7 @@ double GeodesicFan::bound(const Eigen::Vector3d& q) const {
 }
 bool GeodesicFan::finished() const { return impl_->strips.empty() || impl_->spent(); }
 bool GeodesicFan::broken() const { return !impl_->breaks.empty(); }
+double GeodesicFan::tolerance() const { return impl_->options.tolerance; }
 Index GeodesicFan::num_patches() const { return static_cast<Index>(impl_->patches.size()); }
 Index GeodesicFan::num_evaluated() const { return impl_->num_evaluated; }
 

@@ -83,6 +83,7 @@ class GeodesicFan {
   [[nodiscard]] bool finished() const;
   /// True when rays could not be followed somewhere.
   [[nodiscard]] bool broken() const;
+  [[nodiscard]] double tolerance() const;
   [[nodiscard]] Index num_patches() const;
   [[nodiscard]] Index num_evaluated() const;
 

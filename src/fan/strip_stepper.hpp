@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -29,7 +30,8 @@ class StripStepper {
   double error_along = 0;   ///< of positions, left out by the series along the rays
   double error_across = 0;  ///< left out by the series across the rays
   double mismatch = 0;      ///< of d x / d alpha: what interpolation says against what the Jacobi fields say
-  double off_surface = 0;   ///< |F| / |g| between the nodes
+  double off_along = 0;     ///< |F| / |g| at the nodes: of the step's length alone
+  double off_surface = 0;   ///< between the nodes
   double width = 0;         ///< of the widest part
   bool inside = true;       ///< all nodes lie in the surface's domain
   bool gone = false;        ///< all rays end outside of it
@@ -63,6 +65,8 @@ class StripStepper {
   /// Of point i of the last visit.
   [[nodiscard]] Eigen::Vector3d acceleration(Index i, const Eigen::Vector3d& v) const;
   bool settle_ends(RayVectors& x, RayVectors& v, RayVectors& a, RayVectors& n);
+  void place_nodes(const RayStrip& strip);
+  void turn_by_hessians(const RayStrip& strip);
   void follow_fields(const RayStrip& strip);
   bool check(const RayStrip& strip);
   void look_at_domain();
@@ -71,10 +75,10 @@ class StripStepper {
   std::unique_ptr<Evaluator> evaluator_;
   std::unique_ptr<Evaluator> domain_;  // null: the surface has no border
   Index domain_codim_ = 0;
-  std::vector<double> margin_;
+  std::array<bool, kNodes> node_inside_{};
   std::vector<double> value_, gradient_, hessian_, weight_;
   double step_ = 0;
-  RaySeries a_, x_, v_, normals_;
+  RaySeries a_, x_, v_, normals_, visited_;
   Eigen::Array<double, kRays, kStages> curvature_;
   RayVectors end_x_, end_v_, end_a_, end_n_;
   RayNumbers end_jacobi_, end_slope_;

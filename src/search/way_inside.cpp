@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "march/edge.hpp"
+#include "surface/sign_evaluator.hpp"
 
 namespace taut::detail {
 namespace {
@@ -135,7 +136,9 @@ class InsideSearch {
       const double t = static_cast<double>(k) / looks;
       const double s = 1 - t;
       const Point3 x = a + t * t * (3 - 2 * t) * e + t * s * s * out - t * t * s * in;
-      if (room_at(x) < -kSlack * size_) return false;
+      bool inside = false;
+      are_nonnegative(*domain_, num_domain_, 1, x.data(), &inside);
+      if (!inside && room_at(x) < -kSlack * size_) return false;
     }
     return true;
   }

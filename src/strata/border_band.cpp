@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "curve/polyline.hpp"
+#include "surface/sign_evaluator.hpp"
 #include "taut/surface/projection.hpp"
 
 namespace taut::detail {
@@ -111,16 +112,18 @@ class BandPuller {
   [[nodiscard]] Vector outside() {
     const Index parts = x_.cols() - 1;
     Vector worst = Vector::Zero(parts);
-    Points value(num_domain_, parts);
-    Points gradient(3, num_domain_ * parts);
+    Eigen::Array<bool, Eigen::Dynamic, 1> inside(parts);
+    Vector value(num_domain_);
+    Points gradient(3, num_domain_);
     for (int k = 1; k <= kLooks; ++k) {
       const double t = static_cast<double>(k) / (kLooks + 1);
       const Points at = (1 - t) * x_.leftCols(parts) + t * x_.rightCols(parts);
-      domain_->evaluate({.n = parts, .x = at.data(), .value = value.data(), .jacobian = gradient.data()});
+      are_nonnegative(*domain_, num_domain_, parts, at.data(), inside.data());
       for (Index i = 0; i < parts; ++i) {
+        if (inside(i)) continue;
+        domain_->evaluate({.n = 1, .x = at.col(i).data(), .value = value.data(), .jacobian = gradient.data()});
         for (Index m = 0; m < num_domain_; ++m) {
-          const double size = std::max(gradient.col(num_domain_ * i + m).norm(), 1e-300);
-          worst(i) = std::max(worst(i), -value(m, i) / size);
+          worst(i) = std::max(worst(i), -value(m) / std::max(gradient.col(m).norm(), 1e-300));
         }
       }
     }

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "surface/sign_evaluator.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/conformance.hpp"
 
@@ -86,15 +87,17 @@ Eigen::Array<bool, Eigen::Dynamic, 1> Surface::inside_domain(const PointsIn& x, 
   using Mask = Eigen::Array<bool, Eigen::Dynamic, 1>;
   if (domain() == nullptr) return Mask::Constant(x.cols(), true);
   const Index m = domain()->codim();
-  Points value(m, x.cols());
-  Points jacobian(dim() * m, x.cols());
   const Points dense = x;
-  domain()->make_evaluator()->evaluate(
-      {.n = dense.cols(), .x = dense.data(), .value = value.data(), .jacobian = jacobian.data()});
+  const std::unique_ptr<Evaluator> evaluator = domain()->make_evaluator();
   Mask inside(x.cols());
+  detail::are_nonnegative(*evaluator, m, dense.cols(), dense.data(), inside.data());
+  if (!(slack > 0)) return inside;
+  Vector value(m);
+  Eigen::MatrixXd gradients(dim(), m);
   for (Index j = 0; j < x.cols(); ++j) {
-    Eigen::Map<const Eigen::MatrixXd> gradients(jacobian.col(j).data(), dim(), m);
-    inside(j) = (value.col(j).transpose().array() >= -slack * gradients.colwise().norm().array()).all();
+    if (inside(j)) continue;
+    evaluator->evaluate({.n = 1, .x = dense.col(j).data(), .value = value.data(), .jacobian = gradients.data()});
+    inside(j) = (value.transpose().array() >= -slack * gradients.colwise().norm().array()).all();
   }
   return inside;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/clouds.hpp"
+#include "surface/simd_dispatch.hpp"
 #include "taut/cells/find_cells.hpp"
 #include "taut/core/error.hpp"
 #include "taut/surface/conformance.hpp"
@@ -121,6 +122,55 @@ TEST(LocalFit, KeepsThePromisesOfAnEvaluator) {
       EXPECT_NE(found.rule, "nan") << found.detail;
     }
   }
+}
+
+TEST(LocalFit, IsTheSameOnAnyInstructionSet) {
+  const auto best = detail::instruction_set();
+  for (const PointCloud& cloud : {circle_cloud(60), test::sphere_cloud(3, 400)}) {
+    const Surface surface = surface_of(cloud);
+    const Index d = surface.dim();
+    Points x(d, 200);
+    test::Uniform uniform(5);
+    for (double& c : x.reshaped()) c = 2.4 * uniform() - 1.2;
+    x.leftCols(100).colwise().normalize();
+    Points value;
+    Points jacobian;
+    Eigen::MatrixXd hessian;
+    for (const auto set : {detail::InstructionSet::baseline, detail::InstructionSet::sse4, detail::InstructionSet::avx2,
+                           detail::InstructionSet::avx512}) {
+      if (!detail::has_instruction_set(set)) continue;
+      detail::use_instruction_set(set);
+      if (set == detail::InstructionSet::baseline) {
+        value = surface.value(x);
+        jacobian = surface.jacobian(x);
+        hessian = surface.hessian(x.col(0), Vector::Ones(1));
+      }
+      EXPECT_EQ(surface.value(x), value);
+      EXPECT_EQ(surface.jacobian(x), jacobian);
+      EXPECT_EQ(surface.hessian(x.col(0), Vector::Ones(1)), hessian);
+    }
+    detail::use_instruction_set(best);
+  }
+}
+
+// Most points are known to be inside by a sample that held another one.
+TEST(LocalFit, TheSideOfItsBorderIsThatOfTheValue) {
+  const PointCloud sphere = test::sphere_cloud(3, 2000);
+  PointCloud half = test::empty_cloud(3, 1000);
+  half.points = sphere.points.leftCols(1000);
+  half.normals = sphere.normals.leftCols(1000);
+  const Surface surface = surface_of(half);
+  Points x(3, 3000);
+  test::Uniform uniform(7);
+  for (double& c : x.reshaped()) c = 2.4 * uniform() - 1.2;
+  x.leftCols(2500).colwise().normalize();
+  const std::unique_ptr<Evaluator> domain = surface.domain()->make_evaluator();
+  Vector value(x.cols());
+  domain->evaluate({.n = x.cols(), .x = x.data(), .value = value.data()});
+  const auto inside = surface.inside_domain(x);
+  EXPECT_GT(inside.count(), 500);
+  EXPECT_GT(x.cols() - inside.count(), 500);
+  for (Index j = 0; j < x.cols(); ++j) EXPECT_EQ(inside(j), value(j) >= 0) << x.col(j).transpose();
 }
 
 TEST(LocalFit, BoundsExcludeBoxesBesideTheSurface) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "surface/fitted_function.hpp"
+#include "surface/local_fit/blend_kernel.hpp"
 #include "surface/local_fit/patch_range.hpp"
 #include "surface/local_fit/patch_tree.hpp"
 #include "surface/normals/merged_sheets.hpp"
@@ -69,24 +70,18 @@ class BlendedFunction : public FittedFunction {
   [[nodiscard]] std::unique_ptr<Evaluator> make_evaluator() const override;
 
   static constexpr std::size_t kDim = D;
-  static constexpr std::size_t kPairs = Cubic<D>::kPairs;
   using Coordinates = std::array<double, kDim>;
 
-  struct Jet {
-    double value = 0;
-    Coordinates gradient{};
-    std::array<double, kPairs> hessian{};  // packed
-  };
+  using Jet = BlendJet<D>;
 
-  [[nodiscard]] Jet value(const double* x) const { return blend<false>(x); }
-  [[nodiscard]] Jet jet(const double* x) const { return blend<true>(x); }
+  [[nodiscard]] Jet value(const double* x) const { return blend(x, false); }
+  [[nodiscard]] Jet jet(const double* x) const { return blend(x, true); }
 
   /// F over the box, in at most `halvings` steps of halving it.
   [[nodiscard]] PatchRange range(const MiddleBox<D>& box, int halvings, RangeScratch& scratch) const;
 
  private:
-  template <bool Derivatives>
-  [[nodiscard]] Jet blend(const double* x) const;
+  [[nodiscard]] Jet blend(const double* x, bool derivatives) const;
   [[nodiscard]] Jet plane_of_nearest(const double* x) const;
   /// None where too many patches meet the box; `nearest`: distance of its middle to a centre.
   [[nodiscard]] std::optional<PatchRange> range_at_once(const MiddleBox<D>& box, double nearest,
@@ -102,62 +97,35 @@ class BlendedFunction : public FittedFunction {
 };
 
 template <int D>
-template <bool Derivatives>
-auto BlendedFunction<D>::blend(const double* x) const -> Jet {
-  double weights = 0;
-  Coordinates weights_a{};
-  std::array<double, kPairs> weights_ab{};
-  Jet sum;
-  Coordinates u{};
-  Coordinates gradient{};
-  std::array<double, kPairs> hessian{};
+auto BlendedFunction<D>::blend(const double* x, bool derivatives) const -> Jet {
+  PatchLanes<D> lanes;
+  BlendSums<D> sums;
+  std::size_t count = 0;
+  const auto add = [&] {
+    add_patches(lanes, count, x, derivatives, sums);
+    count = 0;
+  };
   for (const std::uint32_t i : tree_.at(x)) {
     const Patch<D>& patch = patches_[i];
-    const double per_radius = 1 / patch.radius;
-    double s = 0;
-    for (std::size_t a = 0; a < kDim; ++a) {
-      u[a] = (x[a] - patch.centre[a]) * per_radius;
-      s += u[a] * u[a];
-    }
-    if (!(s < 1)) continue;
-    const double rest = 1 - s;
-    const double rest2 = rest * rest;
-    const double w = rest2 * rest2;
-    const double f = patch.radius * patch.cubic.value(u);
-    weights += w;
-    sum.value += w * f;
-    if constexpr (Derivatives) {
-      patch.cubic.derivatives(u, gradient, hessian);
-      // w = (1 - s)^4, s_a = 2 u_a / R, s_ab = 2 delta_ab / R^2.
-      const double slope = -8 * rest2 * rest * per_radius;  // w_a = slope u_a
-      const double bend = 48 * rest2 * per_radius * per_radius;
-      Coordinates w_a{};
-      for (std::size_t a = 0; a < kDim; ++a) {
-        w_a[a] = slope * u[a];
-        weights_a[a] += w_a[a];
-        sum.gradient[a] += w_a[a] * f + w * gradient[a];
-      }
-      for (std::size_t a = 0, ab = 0; a < kDim; ++a) {
-        for (std::size_t b = a; b < kDim; ++b, ++ab) {
-          const double w_ab = bend * u[a] * u[b] + (a == b ? slope * per_radius : 0.0);
-          weights_ab[ab] += w_ab;
-          sum.hessian[ab] += w_ab * f + (w_a[a] * gradient[b] + w_a[b] * gradient[a]) + w * (hessian[ab] * per_radius);
-        }
-      }
-    }
+    double squared = 0;
+    for (std::size_t a = 0; a < kDim; ++a) squared += (x[a] - patch.centre[a]) * (x[a] - patch.centre[a]);
+    if (!(squared < patch.radius * patch.radius)) continue;
+    lanes.put(count++, patch);
+    if (count == kBlendLanes) add();
   }
-  if (!(weights >= kLeastWeight)) return plane_of_nearest(x);
+  if (count > 0) add();
+  const auto& [weights, sum] = sums;
+  if (!(weights.value >= kLeastWeight)) return plane_of_nearest(x);
   Jet result;
-  result.value = sum.value / weights;
-  if constexpr (Derivatives) {
-    for (std::size_t a = 0; a < kDim; ++a) {
-      result.gradient[a] = (sum.gradient[a] - result.value * weights_a[a]) / weights;
-    }
-    for (std::size_t a = 0, ab = 0; a < kDim; ++a) {
-      for (std::size_t b = a; b < kDim; ++b, ++ab) {
-        const double mixed = result.gradient[a] * weights_a[b] + result.gradient[b] * weights_a[a];
-        result.hessian[ab] = (sum.hessian[ab] - result.value * weights_ab[ab] - mixed) / weights;
-      }
+  result.value = sum.value / weights.value;
+  if (!derivatives) return result;
+  for (std::size_t a = 0; a < kDim; ++a) {
+    result.gradient[a] = (sum.gradient[a] - result.value * weights.gradient[a]) / weights.value;
+  }
+  for (std::size_t a = 0, ab = 0; a < kDim; ++a) {
+    for (std::size_t b = a; b < kDim; ++b, ++ab) {
+      const double mixed = result.gradient[a] * weights.gradient[b] + result.gradient[b] * weights.gradient[a];
+      result.hessian[ab] = (sum.hessian[ab] - result.value * weights.hessian[ab] - mixed) / weights.value;
     }
   }
   return result;

@@ -25,6 +25,7 @@
 
 #include "surface/rbf/cloud_geometry.hpp"
 #include "surface/rbf/stabbed_balls.hpp"
+#include "surface/sign_evaluator.hpp"
 
 namespace taut::detail {
 namespace {
@@ -72,14 +73,12 @@ struct Support {
   }
 };
 
-class SupportEvaluator : public Evaluator {
+class SupportEvaluator : public SignEvaluator {
  public:
-  explicit SupportEvaluator(const Support& support) : Evaluator(support.points.rows(), 1), s_(support) {}
+  explicit SupportEvaluator(const Support& support)
+      : SignEvaluator(support.points.rows(), 1), s_(support), gradient_(dim_), away_(dim_), hessian_(dim_, dim_) {}
 
   void evaluate(const PointBatch& batch) override {
-    gradient_.resize(dim_);
-    away_.resize(dim_);
-    hessian_.resize(dim_, dim_);
     for (Index j = 0; j < batch.n; ++j) {
       const double value = at(batch.x + j * dim_, batch.jacobian != nullptr, batch.hessian != nullptr);
       if (batch.value != nullptr) batch.value[j] = value;
@@ -90,13 +89,23 @@ class SupportEvaluator : public Evaluator {
     }
   }
 
+  /// A sample that holds x alone says enough, and those near the last point asked for are near the next one as a rule.
+  void are_nonnegative(Index n, const double* x, bool* answer) override {
+    for (Index j = 0; j < n; ++j, x += dim_) {
+      answer[j] = is_held(x);
+      if (answer[j]) continue;
+      s_.balls.stabbed(x, found_);
+      near_ = found_;
+      answer[j] = said_by_found(x, false, false) >= 0;
+    }
+  }
+
   /// From above, the sum of what each sample may say at most; from below, what the one that says most at the middle, or
   /// the nearest one, will say at least.
   bool bounds(const BoxBatch& batch) override {
     for (Index j = 0; j < batch.n; ++j) {
       const double* lower = batch.lower + j * dim_;
       const double* upper = batch.upper + j * dim_;
-      away_.resize(dim_);
       double reach = 0;
       for (Index a = 0; a < dim_; ++a) {
         away_(a) = 0.5 * (lower[a] + upper[a]);
@@ -135,6 +144,17 @@ class SupportEvaluator : public Evaluator {
     return 1 - farthest * farthest;
   }
 
+  /// Does one of the samples that were found last reach x, with room for rounding.
+  bool is_held(const double* x) {
+    for (std::size_t k = 0; k < near_.size(); ++k) {
+      const double rho = s_.rho(near_[k]);
+      if (!(s_.squared(near_[k], x) < (1 - kLevel - kRounding) * rho * rho)) continue;
+      std::swap(near_[0], near_[k]);
+      return true;
+    }
+    return false;
+  }
+
   /// M e, with e = x - sample i, into `away_`; e . M e.
   double look(Index i, const double* x) {
     double along = 0;
@@ -154,6 +174,11 @@ class SupportEvaluator : public Evaluator {
 
   double at(const double* x, bool slopes, bool bends) {
     s_.balls.stabbed(x, found_);
+    return said_by_found(x, slopes, bends);
+  }
+
+  /// By the samples whose balls hold x.
+  double said_by_found(const double* x, bool slopes, bool bends) {
     if (dim_ == 3 && !bends) return at_in_space(x, slopes);
     double sum = 0;
     gradient_.setZero();
@@ -225,6 +250,7 @@ class SupportEvaluator : public Evaluator {
 
   const Support& s_;
   std::vector<Index> found_;
+  std::vector<Index> near_;  // found where `are_nonnegative` has looked last
   Vector gradient_;
   Vector away_;
   Eigen::MatrixXd hessian_;
