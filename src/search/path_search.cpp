@@ -21,7 +21,9 @@
 //           goes on
 //   border  any doubt, or the path leaves the domain    ways over a graph of the one face   start_failed, budget_spent
 //                                                       and its border; on fits, the way
-//                                                       over cells that stays inside        rivals_not_sought
+//                                                       over cells that stays inside; in    rivals_not_sought
+//                                                       more dimensions, starts whose
+//                                                       geodesics leave the domain
 // clang-format on
 //
 // Where there are two ways to the same end the cheaper one comes first: a fan and walks before finer cells that cost
@@ -35,6 +37,7 @@
 #include <utility>
 
 #include "curve/polyline.hpp"
+#include "search/contact_search.hpp"
 #include "search/explain.hpp"
 #include "search/find_obstacle.hpp"
 #include "search/ladder_rules.hpp"
@@ -111,8 +114,9 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
       // On which side of a spike a way begins no landmark tells.
       const bool past_spikes = now.tried(Rung::table) && !now.marched && now.doubts.has(Doubt::sharp_bends);
       const bool wanted = !now.best || now.doubts.has(Doubt::start_failed) || past_spikes;
-      // Finer cells of a fit cost more than to look along its border.
-      const bool by_border = now.best && surface_.samples() != nullptr && can_help(Rung::border, now);
+      // Finer cells of a fit cost more than to look along its border, and in many dimensions more than anything.
+      const bool by_border = now.best && ((surface_.samples() != nullptr && can_help(Rung::border, now)) ||
+                                          (!now.beyond.empty() && has_contacts(surface_, options_)));
       return levels().exist() && now.level < num_levels() && wanted && !by_border && is_affordable(now);
     }
     case Rung::walks:
@@ -131,7 +135,9 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
       const bool doubted = now.has_path() && (fitted ? now.doubts.has(Doubt::start_failed) : now.doubts.any());
       const bool lost = fitted && (now.best ? now.best->status != Status::ok && !now.is_apart()
                                             : now.blocked && !can_help(Rung::fields, now));
-      const bool met = (now.best && now.best->status == Status::left_domain) || doubted || lost;
+      const bool met = has_contacts(surface_, options_)
+                           ? now.best && !now.beyond.empty()
+                           : (now.best && now.best->status == Status::left_domain) || doubted || lost;
       return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
     }
   }

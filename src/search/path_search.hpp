@@ -61,6 +61,7 @@ class PathSearch {
   void spread_fan(Inquiry& now, Corrector& corrector) const;
   void go_along_border(Inquiry& now) const;
   void go_along_samples(Inquiry& now) const;
+  void follow_borders(Inquiry& now) const;
 
   [[nodiscard]] int num_levels() const;
   [[nodiscard]] bool is_affordable(const Inquiry& now) const;
