@@ -551,7 +551,9 @@ class NewtonDriver : public NewtonSolver::Backend {
     points.rightCols<1>() = start.rightCols<1>();
     project_points(points);
     if (surface_.domain() == nullptr) return true;
-    return surface_.inside_domain(looks_at_border(surface_, *evaluator_, points), 1e-7 * check_.length).all();
+    const double slack = 1e-7 * check_.length;
+    return surface_.inside_domain(points, slack).all() &&
+           surface_.inside_domain(looks_at_border(surface_, *evaluator_, points), slack).all();
   }
 
   // Newton's steps onto the surface, all points a round; the ends stay. Polynomials leave it by their error only.

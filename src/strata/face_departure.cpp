@@ -57,12 +57,11 @@ Departure departure_along(FacetedSurface& surface, int face, Points line) {
 }
 
 /// An obstacle may be smaller than the parts that are looked at.
-Departure departure_of(FacetedSurface& surface, const ChainArc& arc) {
-  Departure found =
-      departure_along(surface, arc.face, arc.line.cols() > 0 ? arc.line : at_equal_parts(arc.points, kParts));
-  if (found.first >= 0 || surface.surface().domain() == nullptr) return found;
-  Points closer = looks_at_border(surface.surface(), *surface.face(arc.face).evaluator, found.line);
-  return closer.cols() > found.line.cols() ? departure_along(surface, arc.face, std::move(closer)) : found;
+Departure departure_of(FacetedSurface& surface, const ChainArc& arc, bool closely) {
+  const Points line = arc.line.cols() > 0 ? arc.line : at_equal_parts(arc.points, kParts);
+  if (!closely) return departure_along(surface, arc.face, line);
+  return departure_along(surface, arc.face,
+                         looks_at_border(surface.surface(), *surface.face(arc.face).evaluator, line));
 }
 
 /// Bends arc i in the corners between the edges of `row`: (place on the line, condition).
@@ -114,11 +113,11 @@ void shift_crossing(FacetChain& chain, std::size_t i, bool at_end, const std::ve
 
 }  // namespace
 
-ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i, int& num_shifted) {
+ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i, bool closely, int& num_shifted) {
   ChainArc& arc = chain.arcs[i];
   if (arc.face < 0 || arc.length <= ChainTolerances::together * surface.scale) return {};
   const int face = arc.face;
-  const Departure out = departure_of(surface, arc);
+  const Departure out = departure_of(surface, arc, closely);
   if (out.first < 0) return {};
   const auto condition_at = [&](Index j) { return out.condition[static_cast<std::size_t>(j)]; };
   const int enter = condition_at(out.first);
