@@ -4,7 +4,9 @@
 //
 // clang-format off
 //   rung    can lift                                    finds starts by                     leaves, as a doubt
-//   faces   no path yet, on a surface with edges        ways over a graph of faces          start_failed, budget_spent
+//   faces   no path yet, on a surface with edges; of    ways over a graph of faces          start_failed, budget_spent
+//           many pairs also on one that is cut, where
+//           the path runs along its border
 //   table   no path yet                                 distances between landmarks         start_failed, coarse_cells,
 //                                                                                           sharp_bends
 //   fields  no path yet; start_failed, once;            distances marched from both ends,   the same
@@ -89,6 +91,9 @@ void PathSearch::prepare(const PointsIn& near) {
 
 void PathSearch::tabulate(Index num_pairs) {
   if (!kinked_) finder_.tabulate(num_pairs);
+  const bool cut = surface_.dim() == 3 && surface_.codim() == 1 && surface_.domain() != nullptr;
+  border_first_ = cut && !kinked_ && scope_ == Scope::whole && surface_.samples() == nullptr &&
+                  num_pairs >= kLadderRules.pairs_for_border_first;
 }
 
 PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& corrector, std::optional<Starts> first) const {
@@ -108,7 +113,7 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
   if (now.settled) return false;
   const bool whole = scope_ == Scope::whole;
   switch (rung) {
-    case Rung::faces: return kinked_ && !now.tried(rung);
+    case Rung::faces: return (kinked_ || border_first_) && !now.tried(rung);
     case Rung::table: return finder_.has_table() && !now.first && !now.tried(rung);
     case Rung::fields: {
       // On which side of a spike a way begins no landmark tells.

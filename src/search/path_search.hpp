@@ -81,6 +81,7 @@ class PathSearch {
   const Context& context_;
   Scope scope_;
   bool kinked_;
+  bool border_first_ = false;  // so many pairs are expected on a cut surface that its graph is worth making
   StartFinder finder_;
   Points points_;               // of interest, by the last `prepare`
   mutable FacetWorkers faces_;  // under their own lock

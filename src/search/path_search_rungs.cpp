@@ -38,6 +38,17 @@ bool correct(Inquiry& now, Corrector& corrector, const Starts& starts, bool last
 /// where it cannot be asked or knows no way at all, and their path is in doubt.
 void PathSearch::go_over_faces(Inquiry& now) const {
   std::optional<PathResult> found = faces_.find(now.from(), now.to(), levels().extent());
+  if (!kinked_) {
+    // A path that meets no border is left to the search that knows none: obstacles that are not met change nothing.
+    if (found) now.add_effort(*found);
+    const auto is_along = [](const PathPiece& piece) { return piece.kind == PathPiece::Kind::border; };
+    if (!found || found->status != Status::ok || found->doubts.any() || !std::ranges::any_of(found->pieces, is_along)) {
+      return;
+    }
+    now.best = std::move(found);
+    now.settled = true;
+    return;
+  }
   if (!found) {
     now.over_edges.add(Doubt::edges_not_searched);
     return;
