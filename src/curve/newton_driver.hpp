@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "curve/curve_check.hpp"
+#include "curve/looks_at_border.hpp"
 #include "curve/newton_backend.hpp"
 #include "curve/newton_kernel.hpp"
 #include "curve/polyline.hpp"
@@ -572,7 +573,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     points.col(0) = start.col(0);
     points.rightCols<1>() = start.rightCols<1>();
     project_points(points);
-    return surface_.domain() == nullptr || surface_.inside_domain(points, 1e-7 * check_.length).all();
+    if (surface_.domain() == nullptr) return true;
+    const double slack = 1e-7 * check_.length;
+    return surface_.inside_domain(points, slack).all() &&
+           surface_.inside_domain(looks_at_border(surface_, *evaluator_, points), slack).all();
   }
 
   // Newton's steps onto the surface, all points a round; the ends stay. Polynomials leave it by their error only.

@@ -270,6 +270,7 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
   std::vector<PathCandidate> candidates;
   std::vector<const Choice*> failed;
   double promised = std::numeric_limits<double>::infinity();  // by curves that are not quite geodesics
+  beyond_.clear();
   Hope hope(selects ? 0 : starts.error);
   std::vector<Corrected> corrected(choices.size());
   FlowLattice lattice;
@@ -284,7 +285,11 @@ bool Corrector::correct(PathResult& result, const Starts& starts, bool last) {
           if (!selects) hope.doubt(choices[j].length, geodesic.length);
         } else {
           // A geodesic beyond the domain is no fault of the start.
-          if (geodesic.status != Status::left_domain) failed.push_back(&choices[j]);
+          if (geodesic.status != Status::left_domain) {
+            failed.push_back(&choices[j]);
+          } else {
+            beyond_.push_back({geodesic.length - geodesic.length_error, choices[j].start});
+          }
           promised = std::min(promised, geodesic.length + geodesic.length_error);
         }
         if (geodesic.status == Status::ok) add_candidate(candidates, candidate_of(geodesic));

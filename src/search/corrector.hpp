@@ -26,6 +26,10 @@ class Corrector {
   /// promised a clearly shorter path has not led to one. `last`: no other starts will be tried.
   [[nodiscard]] bool correct(PathResult& result, const Starts& starts, bool last);
 
+  /// Of the starts last corrected those whose geodesics leave the domain, with about the lengths of these, which are at
+  /// most those of paths within: shortest first.
+  [[nodiscard]] const std::vector<StartPath>& beyond() const { return beyond_; }
+
  private:
   struct Corrected {
     Geodesic geodesic;
@@ -63,6 +67,7 @@ class Corrector {
   const Context& context_;
   Solvers rough_;
   Solvers newton_;
+  std::vector<StartPath> beyond_;
   std::optional<StrandMaker> maker_;
   Index num_gentle_nodes_ = 0;       // evaluated by correct_gently for these starts
   Index last_gentle_projected_ = 0;  // of maker_'s count

@@ -60,6 +60,9 @@ struct Inquiry {
   std::optional<Barrier> barrier;  ///< where the last fields stopped
   Doubts of_cells;                 ///< about `best`, by the cells of the fields
 
+  // Border.
+  std::vector<StartPath> beyond;  ///< starts whose geodesics leave the domain, with their least lengths
+
   // Walks.
   std::optional<PathResult> fallback;  ///< what walks led to where fields may still do better
 

@@ -7,6 +7,10 @@ namespace taut::detail {
 /// How far each rung of the search goes. Work is counted in cells: making and marching over a million cells of a
 /// formula takes some seconds on one core, a cell of a fitted surface about a millisecond.
 struct LadderRules {
+  /// Faces. On a surface that is cut, its border comes first where so many pairs are asked: the graph takes 30 ms, and
+  /// a pair among five holes then 1.2 ms instead of 2.3.
+  Index pairs_for_border_first = 64;
+
   /// Fields. Where sheets cannot be told apart, walks are tried before cells get more than this: ends on one sheet of a
   /// thin shell took 42 s on cells, walks answer in less time than two million cells take.
   Index most_cells_before_walks = 2'000'000;

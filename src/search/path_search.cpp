@@ -4,7 +4,9 @@
 //
 // clang-format off
 //   rung    can lift                                    finds starts by                     leaves, as a doubt
-//   faces   no path yet, on a surface with edges        ways over a graph of faces          start_failed, budget_spent
+//   faces   no path yet, on a surface with edges; of    ways over a graph of faces          start_failed, budget_spent
+//           many pairs also on one that is cut, where
+//           the path runs along its border
 //   table   no path yet                                 distances between landmarks         start_failed, coarse_cells,
 //                                                                                           sharp_bends
 //   fields  no path yet; start_failed, once;            distances marched from both ends,   the same
@@ -21,7 +23,9 @@
 //           goes on
 //   border  any doubt, or the path leaves the domain    ways over a graph of the one face   start_failed, budget_spent
 //                                                       and its border; on fits, the way
-//                                                       over cells that stays inside        rivals_not_sought
+//                                                       over cells that stays inside; in    rivals_not_sought
+//                                                       more dimensions, starts whose
+//                                                       geodesics leave the domain
 // clang-format on
 //
 // Where there are two ways to the same end the cheaper one comes first: a fan and walks before finer cells that cost
@@ -35,6 +39,7 @@
 #include <utility>
 
 #include "curve/polyline.hpp"
+#include "search/contact_search.hpp"
 #include "search/explain.hpp"
 #include "search/find_obstacle.hpp"
 #include "search/ladder_rules.hpp"
@@ -86,6 +91,9 @@ void PathSearch::prepare(const PointsIn& near) {
 
 void PathSearch::tabulate(Index num_pairs) {
   if (!kinked_) finder_.tabulate(num_pairs);
+  const bool cut = surface_.dim() == 3 && surface_.codim() == 1 && surface_.domain() != nullptr;
+  border_first_ = cut && !kinked_ && scope_ == Scope::whole && surface_.samples() == nullptr &&
+                  num_pairs >= kLadderRules.pairs_for_border_first;
 }
 
 PathResult PathSearch::find(const Vector& p, const Vector& q, Corrector& corrector, std::optional<Starts> first) const {
@@ -105,14 +113,15 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
   if (now.settled) return false;
   const bool whole = scope_ == Scope::whole;
   switch (rung) {
-    case Rung::faces: return kinked_ && !now.tried(rung);
+    case Rung::faces: return (kinked_ || border_first_) && !now.tried(rung);
     case Rung::table: return finder_.has_table() && !now.first && !now.tried(rung);
     case Rung::fields: {
       // On which side of a spike a way begins no landmark tells.
       const bool past_spikes = now.tried(Rung::table) && !now.marched && now.doubts.has(Doubt::sharp_bends);
       const bool wanted = !now.best || now.doubts.has(Doubt::start_failed) || past_spikes;
-      // Finer cells of a fit cost more than to look along its border.
-      const bool by_border = now.best && surface_.samples() != nullptr && can_help(Rung::border, now);
+      // Finer cells of a fit cost more than to look along its border, and in many dimensions more than anything.
+      const bool by_border = now.best && ((surface_.samples() != nullptr && can_help(Rung::border, now)) ||
+                                          (!now.beyond.empty() && has_contacts(surface_, options_)));
       return levels().exist() && now.level < num_levels() && wanted && !by_border && is_affordable(now);
     }
     case Rung::walks:
@@ -131,7 +140,9 @@ bool PathSearch::can_help(Rung rung, const Inquiry& now) const {
       const bool doubted = now.has_path() && (fitted ? now.doubts.has(Doubt::start_failed) : now.doubts.any());
       const bool lost = fitted && (now.best ? now.best->status != Status::ok && !now.is_apart()
                                             : now.blocked && !can_help(Rung::fields, now));
-      const bool met = (now.best && now.best->status == Status::left_domain) || doubted || lost;
+      const bool met = has_contacts(surface_, options_)
+                           ? now.best && !now.beyond.empty()
+                           : (now.best && now.best->status == Status::left_domain) || doubted || lost;
       return whole && surface_.domain() != nullptr && !kinked_ && met && !now.tried(rung);
     }
   }

@@ -61,6 +61,7 @@ class PathSearch {
   void spread_fan(Inquiry& now, Corrector& corrector) const;
   void go_along_border(Inquiry& now) const;
   void go_along_samples(Inquiry& now) const;
+  void follow_borders(Inquiry& now) const;
 
   [[nodiscard]] int num_levels() const;
   [[nodiscard]] bool is_affordable(const Inquiry& now) const;
@@ -80,6 +81,7 @@ class PathSearch {
   const Context& context_;
   Scope scope_;
   bool kinked_;
+  bool border_first_ = false;  // so many pairs are expected on a cut surface that its graph is worth making
   StartFinder finder_;
   Points points_;               // of interest, by the last `prepare`
   mutable FacetWorkers faces_;  // under their own lock

@@ -13,6 +13,7 @@
 #include "fan/fan_answers.hpp"
 #include "fan/geodesic_fan.hpp"
 #include "search/border_search.hpp"
+#include "search/contact_search.hpp"
 #include "search/ladder_rules.hpp"
 #include "search/path_search.hpp"
 #include "taut/cells/find_cells.hpp"
@@ -27,6 +28,7 @@ bool correct(Inquiry& now, Corrector& corrector, const Starts& starts, bool last
   result = now.blank;
   const bool sure = corrector.correct(result, starts, last);
   now.blank.seconds = result.seconds;
+  now.beyond = corrector.beyond();
   return sure;
 }
 
@@ -36,6 +38,17 @@ bool correct(Inquiry& now, Corrector& corrector, const Starts& starts, bool last
 /// where it cannot be asked or knows no way at all, and their path is in doubt.
 void PathSearch::go_over_faces(Inquiry& now) const {
   std::optional<PathResult> found = faces_.find(now.from(), now.to(), levels().extent());
+  if (!kinked_) {
+    // A path that meets no border is left to the search that knows none: obstacles that are not met change nothing.
+    if (found) now.add_effort(*found);
+    const auto is_along = [](const PathPiece& piece) { return piece.kind == PathPiece::Kind::border; };
+    if (!found || found->status != Status::ok || found->doubts.any() || !std::ranges::any_of(found->pieces, is_along)) {
+      return;
+    }
+    now.best = std::move(found);
+    now.settled = true;
+    return;
+  }
   if (!found) {
     now.over_edges.add(Doubt::edges_not_searched);
     return;
@@ -282,6 +295,7 @@ void PathSearch::add_ray(const FanHit& way, const Inquiry& now, Starts& starts) 
 /// Where a domain cuts the surface the shortest path may run along the cut: it is the shorter one, or the only one.
 void PathSearch::go_along_border(Inquiry& now) const {
   if (surface_.samples() != nullptr) return go_along_samples(now);
+  if (has_contacts(surface_, options_)) return follow_borders(now);
   std::optional<PathResult> other = faces_.find(now.from(), now.to(), levels().extent());
   if (!other) return;
   now.add_effort(*other);
@@ -293,6 +307,31 @@ void PathSearch::go_along_border(Inquiry& now) const {
   }
   if (other->status != Status::ok || (now.has_path() && now.best->length <= other->length)) return;
   now.doubts = other->doubts;
+  now.best = std::move(other);
+}
+
+/// The same in more dimensions: from every start that has led out of the domain.
+void PathSearch::follow_borders(Inquiry& now) const {
+  PathResult other = search_contacts(surface_, options_, now.beyond, now.from(), now.to(), context_);
+  now.add_effort(other);
+  const bool found = other.status == Status::ok;
+  if (!found && !now.has_path()) {
+    now.best->obstacle = other.obstacle;
+    now.best->reason = other.reason;
+    now.best->message.clear();
+    return;
+  }
+  const bool better = found && !(now.has_path() && now.best->length <= other.length);
+  now.doubts.remove(Doubt::start_failed);
+  now.doubts.add(other.doubts);
+  if (!found) now.doubts.add(Doubt::start_failed);
+  if (!better) {
+    now.best->obstacle = other.obstacle;
+    return;
+  }
+  other.cell = now.blank.cell;
+  other.num_cells = now.blank.num_cells;
+  other.grid = now.blank.grid;
   now.best = std::move(other);
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "curve/looks_at_border.hpp"
 #include "curve/polyline.hpp"
 #include "strata/chain_tolerances.hpp"
 #include "strata/edge_contact.hpp"
@@ -38,13 +39,13 @@ struct Departure {
   double deepest = 0;
 };
 
-Departure departure_of(FacetedSurface& surface, const ChainArc& arc) {
+Departure departure_along(FacetedSurface& surface, int face, Points line) {
   Departure found;
-  found.line = arc.line.cols() > 0 ? arc.line : at_equal_parts(arc.points, kParts);
+  found.line = std::move(line);
   found.condition.assign(static_cast<std::size_t>(found.line.cols()), -1);
-  for (const Index j : surface.not_inside(arc.face, found.line)) {
+  for (const Index j : surface.not_inside(face, found.line)) {
     const Point3 x = found.line.col(j);
-    const double out = surface.violation(arc.face, x, &found.condition[static_cast<std::size_t>(j)]);
+    const double out = surface.violation(face, x, &found.condition[static_cast<std::size_t>(j)]);
     if (!(out > ChainTolerances::off_face * surface.scale)) continue;
     if (found.first < 0) found.first = j;
     if (found.last < 0 || found.last == j - 1) {
@@ -53,6 +54,14 @@ Departure departure_of(FacetedSurface& surface, const ChainArc& arc) {
     }
   }
   return found;
+}
+
+/// An obstacle may be smaller than the parts that are looked at.
+Departure departure_of(FacetedSurface& surface, const ChainArc& arc, bool closely) {
+  const Points line = arc.line.cols() > 0 ? arc.line : at_equal_parts(arc.points, kParts);
+  if (!closely) return departure_along(surface, arc.face, line);
+  return departure_along(surface, arc.face,
+                         looks_at_border(surface.surface(), *surface.face(arc.face).evaluator, line));
 }
 
 /// Bends arc i in the corners between the edges of `row`: (place on the line, condition).
@@ -104,11 +113,11 @@ void shift_crossing(FacetChain& chain, std::size_t i, bool at_end, const std::ve
 
 }  // namespace
 
-ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i, int& num_shifted) {
+ChainMove keep_on_face(FacetedSurface& surface, FacetChain& chain, std::size_t i, bool closely, int& num_shifted) {
   ChainArc& arc = chain.arcs[i];
   if (arc.face < 0 || arc.length <= ChainTolerances::together * surface.scale) return {};
   const int face = arc.face;
-  const Departure out = departure_of(surface, arc);
+  const Departure out = departure_of(surface, arc, closely);
   if (out.first < 0) return {};
   const auto condition_at = [&](Index j) { return out.condition[static_cast<std::size_t>(j)]; };
   const int enter = condition_at(out.first);

@@ -23,12 +23,6 @@ namespace {
 constexpr double kNearCell = 0.9;
 /// Farther from the middle of the cell, in cells, a zero set is not looked for a second time.
 constexpr double kFarFromCell = 2;
-/// Beyond its face, the middle of a step along an edge may reach by this part of its length, since edges are curved;
-/// that of another step by the second part: it must not cut a corner that reaches into the face.
-constexpr double kBeyondEdge = 0.15;
-constexpr double kBeyond = 0.03;
-/// The foot of a step's middle is no farther, of its length.
-constexpr double kFarFoot = 0.6;
 /// Conditions that vanish within this, relative to the model.
 constexpr double kOnEdge = 1e-9;
 /// Corners closer than this part of the model, and other nodes closer than this part of a cell, are one.
@@ -60,19 +54,6 @@ std::uint64_t moved(std::uint64_t key, int di, int dj, int dk) {
   return key_of(part(42) + di, part(21) + dj, part(0) + dk);
 }
 
-/// Length of a step on a face, infinite where it is none: over the foot of the chord's middle.
-float step_on(FacetedSurface& surface, int face, const Point3& a, const Point3& b, bool along_edge) {
-  const double chord = (b - a).norm();
-  if (chord == 0) return 0;
-  Point3 middle = (a + b) / 2;
-  const Point3 from = middle;
-  if (!surface.project(face, {}, middle) || (middle - from).norm() > kFarFoot * chord) return kNone;
-  const double length = (middle - a).norm() + (b - middle).norm();
-  if (length > FacetGraph::kLongStep * chord) return kNone;
-  if (surface.violation(face, middle) > (along_edge ? kBeyondEdge : kBeyond) * chord) return kNone;
-  return static_cast<float>(length);
-}
-
 /// The same step, for the node it comes to.
 FacetLink reversed(const FacetLink& link, std::uint32_t from, const FacetNode& a, const FacetNode& b) {
   FacetLink back{from, link.length, 0};
@@ -91,22 +72,6 @@ double cell_size_for(const FacetedSurface& surface, const Box& box, double cells
   const double first = box.extent().maxCoeff() / kFirstCells;
   const Index coarse = subdivide(surface.surface(), {.size = first, .box = box}, context).num_cells();
   return first * std::min(1.0, std::sqrt(static_cast<double>(coarse) / cells));
-}
-
-/// More faces at one point than a link has bits are not walked on.
-FacetLink step_between(FacetedSurface& surface, const FacetNode& a, const FacetNode& b) {
-  FacetLink link;
-  constexpr std::size_t kBits = 32;
-  const bool along_edge = a.edge >= 0 && a.edge == b.edge;
-  for (std::size_t i = 0; i < std::min(a.faces.size(), kBits); ++i) {
-    const auto other = std::find(b.faces.begin(), b.faces.end(), a.faces[i]) - b.faces.begin();
-    if (static_cast<std::size_t>(other) >= std::min(b.faces.size(), kBits)) continue;
-    const float length = step_on(surface, a.faces[i], a.x, b.x, along_edge);
-    if (length == kNone) continue;
-    link.faces |= std::uint32_t{1} << i;
-    link.length = std::min(link.length, length);
-  }
-  return link;
 }
 
 FacetGraph::FacetGraph(FacetedSurface& surface, const Box& box, double size, const Context& context)
@@ -281,13 +246,14 @@ std::vector<FacetLink> FacetGraph::links_of(FacetedSurface& surface, const Facet
 
 void FacetGraph::link(FacetedSurface& surface) {
   const double reach = kReach * size_;
-  std::vector<std::pair<std::uint32_t, FacetLink>> found;  // from the earlier node of each pair
+  constexpr std::size_t kPairsPerNode = 12;  // of a plane; on edges there are more
+  FacetSteps steps(surface, kPairsPerNode * nodes_.size());
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;  // the earlier node first
+  pairs.reserve(kPairsPerNode * nodes_.size());
   const auto join = [&](std::uint32_t i, std::uint32_t j) {
     if ((nodes_[j].x - nodes_[i].x).squaredNorm() > reach * reach) return;
-    FacetLink link = step_between(surface, nodes_[i], nodes_[j]);
-    if (link.length == kNone) return;
-    link.to = j;
-    found.emplace_back(i, link);
+    steps.add(nodes_[i], nodes_[j]);
+    pairs.emplace_back(i, j);
   };
   for (std::size_t b = 0; b < bins_.nodes.size(); ++b) {
     const std::vector<std::uint32_t>& own = bins_.nodes[b];
@@ -303,18 +269,25 @@ void FacetGraph::link(FacetedSurface& surface) {
       }
     }
   }
+  const std::vector<FacetLink> links = steps.links();
+  const auto for_each = [&](const auto& visit) {
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      if (links[k].length != kNone) visit(pairs[k].first, pairs[k].second, links[k]);
+    }
+  };
   first_.assign(nodes_.size() + 1, 0);
-  for (const auto& [i, link] : found) {
+  for_each([&](std::uint32_t i, std::uint32_t j, const FacetLink&) {
     ++first_[i + 1];
-    ++first_[link.to + 1];
-  }
+    ++first_[j + 1];
+  });
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  links_.resize(2 * found.size());
+  links_.resize(first_.back());
   std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (const auto& [i, link] : found) {
+  for_each([&](std::uint32_t i, std::uint32_t j, FacetLink link) {
+    link.to = j;
     links_[next[i]++] = link;
-    links_[next[link.to]++] = reversed(link, i, nodes_[i], nodes_[link.to]);
-  }
+    links_[next[j]++] = reversed(link, i, nodes_[i], nodes_[j]);
+  });
 }
 
 }  // namespace taut::detail

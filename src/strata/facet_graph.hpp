@@ -2,32 +2,16 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
 
+#include "strata/facet_step.hpp"
 #include "strata/faceted_surface.hpp"
 #include "taut/core/context.hpp"
 #include "taut/core/types.hpp"
 
 namespace taut::detail {
-
-/// A point of a face, an edge or a corner.
-struct FacetNode {
-  Point3 x;
-  std::vector<int> faces;  ///< that it lies on
-  int edge = -1;           ///< of which it is an inner point
-  bool corner = false;
-  std::vector<int> reflex = {};  ///< faces that a corner reaches into: they have more than 180 degrees there
-};
-
-/// A step from a node to another one over faces that both lie on.
-struct FacetLink {
-  std::uint32_t to = 0;
-  float length = std::numeric_limits<float>::infinity();
-  std::uint32_t faces = 0;  ///< bit i: over the i-th face of the node that it leaves
-};
 
 /// Points of every face, edge and corner in the cells of a box, joined to their neighbours on the same face. Shortest
 /// ways over it are some per cent too long, and tell which faces a shortest path may cross. Immutable.
@@ -35,8 +19,6 @@ class FacetGraph {
  public:
   /// Nodes so many cells apart are joined.
   static constexpr double kReach = 2.3;
-  /// A step may be longer than its chord by this: a quarter circle is by 1.11.
-  static constexpr double kLongStep = 1.3;
 
   /// Cells of at most `size` (model units) of `box`. Throws EmptySurface, OutOfMemory, Cancelled.
   FacetGraph(FacetedSurface& surface, const Box& box, double size, const Context& context);
@@ -89,8 +71,5 @@ class FacetGraph {
 /// The size at which a box has about `cells` cells that the surface crosses. Throws EmptySurface, OutOfMemory,
 /// Cancelled.
 [[nodiscard]] double cell_size_for(const FacetedSurface& surface, const Box& box, double cells, const Context& context);
-
-/// The step from a to b, infinite where there is none.
-[[nodiscard]] FacetLink step_between(FacetedSurface& surface, const FacetNode& a, const FacetNode& b);
 
 }  // namespace taut::detail

@@ -80,7 +80,7 @@ class Tree {
   static constexpr double kWidth = 0.25;  // cells
   // More than the longest step (an end's) is wide.
   static constexpr std::uint64_t kBuckets = 64;
-  static_assert(kWidth * kBuckets > FacetGraph::kReach * FacetGraph::kLongStep * kWidestEnd + 2 * kWidth);
+  static_assert(kWidth * kBuckets > FacetGraph::kReach * FacetSteps::kLongStep * kWidestEnd + 2 * kWidth);
   struct Entry {
     double length;
     std::uint32_t node;
@@ -236,7 +236,7 @@ class WaySearch {
 void WaySearch::grow(double slack) {
   best_ = static_cast<double>(direct_.length);
   for (const std::size_t end : {0U, 1U}) trees_[end].emplace(graph_, links_[end]);
-  const double step = FacetGraph::kLongStep * reach_;
+  const double step = FacetSteps::kLongStep * reach_;
   const auto advance = [&](std::size_t end, double part) {
     trees_[end]->advance(tree(1 - end), ends_[1 - end].x, part * best_,
                          [&](std::uint32_t node) { best_ = std::min(best_, total(node)); });
@@ -429,7 +429,7 @@ std::vector<FacetWay> WaySearch::find(double slack) {
   std::vector<FacetWay> found;
   if (!(best_ < kFar)) return found;
   const auto n = static_cast<std::uint32_t>(graph_.nodes().size());
-  const double half = FacetGraph::kLongStep * reach_;
+  const double half = FacetSteps::kLongStep * reach_;
   const double longest_row = slack_of_rows(slack) * best_;
   using Through = std::pair<double, std::uint32_t>;  // the length of the way through a node
   std::vector<Through> near_middle;

@@ -122,7 +122,12 @@ ChainMove mend(FacetedSurface& surface, FacetChain& chain, const SlidStops& slid
     move.changed = lift_from_edge(surface, chain, i);
   }
   for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.fault == ChainFault::none; ++i) {
-    move = keep_on_face(surface, chain, i, num_shifted);
+    move = keep_on_face(surface, chain, i, false, num_shifted);
+  }
+  // What is about to be believed is looked at closely.
+  if (surface.surface().domain() == nullptr) return move;
+  for (std::size_t i = 0; i < chain.arcs.size() && !move.changed && move.stuck.fault == ChainFault::none; ++i) {
+    move = keep_on_face(surface, chain, i, true, num_shifted);
   }
   return move;
 }

@@ -31,6 +31,21 @@ TEST(Borders, PlaneWithAHole) {
   EXPECT_NEAR(found.pieces[1].length, kPi / 3, 1e-10);
 }
 
+// Smaller than the gaps between the points at which a path is looked at: 2026-12-01, run through in silence.
+TEST(Borders, HolesSmallerThanGaps) {
+  for (const double r : {0.1, 0.01, 0.001}) {
+    const double a = 4.03;
+    const double b = 4;
+    const double h = r / 3;
+    const PathResult found = path("z=0", {"x^2+y^2>=" + std::to_string(r * r)}, {-a, h, 0}, {b, h, 0});
+    ASSERT_EQ(found.status, Status::ok) << found.message;
+    const double from = std::hypot(a, h);
+    const double to = std::hypot(b, h);
+    const double turn = kPi - std::atan2(h, a) - std::atan2(h, b) - std::acos(r / from) - std::acos(r / to);
+    EXPECT_NEAR(found.length, std::sqrt(from * from - r * r) + std::sqrt(to * to - r * r) + r * turn, 1e-11) << r;
+  }
+}
+
 TEST(Borders, SphereBandAlongItsEdge) {
   // Half way round at latitude 30 degrees, with everything above cut off: along the edge where it is pressed.
   const double z = 0.5;
