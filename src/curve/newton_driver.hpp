@@ -98,7 +98,7 @@ class NewtonDriver : public NewtonSolver::Backend {
  private:
   static constexpr double kWideTurn = 0.9;  // radians between nodes beyond which a coarse curve is not trusted
   static constexpr Index kCoarseSegments = 24;
-  static constexpr int kMostCuts = 16;          // of a coarse segment, into halves
+  static constexpr int kMostCuts = 11;          // of a coarse segment, into halves
   static constexpr double kShortestCut = 1e-6;  // of the whole: segments that short are left as they are
   // Of the lengths of neighbouring elements, at most. Without it Newton's method loses paths over the rims of
   // ellipsoids 1:1:0.01 and 1:1:0.005 at any tolerance; with it they are found at all, down to 1:1:0.002.

@@ -59,9 +59,9 @@ INSTANTIATE_TEST_SUITE_P(
                     ExpectedVolume{"pynrrd/BallBinary30x30x30.nhdr", {30, 30, 30}, {1, 1, 1}, 0, 257},
                     ExpectedVolume{"pynrrd/BallBinary30x30x30_gz.nrrd", {30, 30, 30}, {1, 1, 1}, 0, 257},
                     ExpectedVolume{"pynrrd/BallBinary30x30x30.nii.gz", {30, 30, 30}, {1, 1, 1}, 0, 257}),
-    [](const testing::TestParamInfo<ExpectedVolume>& info) {
+    [](const testing::TestParamInfo<ExpectedVolume>& volume) {
       std::string name;
-      for (const char c : info.param.file) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
+      for (const char c : volume.param.file) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '_';
       return name;
     });
 
