@@ -269,10 +269,10 @@ class NewtonDriver : public NewtonSolver::Backend {
     kernel_.nodes() = nodes;
   }
 
-  // Cuts elements into halves until none is longer than kGrading times a neighbour: towards a bend that is far sharper
-  // than the rest a polynomial over all that leads there would miss it.
+  // Cuts elements into halves until none is longer than kGrading times a neighbour, or there would be too many: towards
+  // a bend that is far sharper than the rest a polynomial over all that leads there would miss it.
   [[nodiscard]] std::vector<double> graded(std::vector<double> lengths) const {
-    for (bool cut = true; cut && static_cast<Index>(lengths.size()) < options_.max_elements;) {
+    for (bool cut = true; cut;) {
       std::vector<double> finer;
       for (std::size_t e = 0; e < lengths.size(); ++e) {
         double least = lengths[e];
@@ -281,8 +281,8 @@ class NewtonDriver : public NewtonSolver::Backend {
         const bool halve = lengths[e] > kGrading * least;
         finer.insert(finer.end(), halve ? 2 : 1, halve ? lengths[e] / 2 : lengths[e]);
       }
-      cut = finer.size() > lengths.size();
-      lengths = std::move(finer);
+      cut = finer.size() > lengths.size() && static_cast<Index>(finer.size()) <= options_.max_elements;
+      if (cut) lengths = std::move(finer);
     }
     return lengths;
   }
